@@ -166,15 +166,24 @@ function warn(...) end
 ---@field parts part_list # read-only. Its parts, in stream order; call it to iterate over those that match a pattern.
 ---@field joints joint_list # read-only. Its joints, in stream order; call it to iterate over those that match a pattern.
 ---@field motors motor_list # read-only. Its motors, in stream order; call it to iterate over those that match a pattern.
+---@field sensors sensor_list # read-only. Its sensors, in the order of their creation.
 ---@field behaviors behavior_list # read-only. Its behaviors, in the order in which they run.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@field position vec3like # m, -10000 .. 10000. Position of the root's link frame, world; setting it moves the whole body rigidly. Beyond 10 km, the stability check restores the body.
 ---@field rotation quat # Rotation of the root's link frame, world: x y z w; setting it rotates the whole body about the root.
 ---@field linear_velocity vec3like # m/s, -10000 .. 10000. Velocity of the root; setting it sets that of all parts. From 500 m/s on, the stability check restores the body.
 ---@field angular_velocity vec3like # rad/s, -10000 .. 10000. Angular velocity of the root; setting it rotates the whole body about the root. From 1000 rad/s of tumbling on, the stability check restores the body.
+---@field motion "dynamic"|"kinematic"|"static" # How the root moves; setting it sets that of all parts (a part without mass can't be dynamic).
+---@field gravity_factor number # -100 .. 100, default 1. Factor on gravity: 0 floats, negative values rise.
 ---@field self_collision boolean # default true. Whether its parts collide with each other, except for pairs connected by a joint and excluded_pairs.
 ---@field can_sleep boolean # default true. Whether its parts may fall asleep at rest; sleeping parts cost nothing until something acts on them.
 ---@field asleep boolean # read-only. True if all its movable parts sleep.
+---@field mass number # read-only, kg. Total mass of its movable parts.
+---@field center_of_mass vec3 # read-only, m. Center of mass of its movable parts, world, after the last tick.
+---@field momentum vec3 # read-only, kg·m/s. Total momentum, world axes.
+---@field angular_momentum vec3 # read-only, kg·m²/s. Angular momentum about its center of mass, world axes.
+---@field kinetic_energy number # read-only, J. Energy of its motion and rotation.
+---@field potential_energy number # read-only, J. Energy in the gravity field; 0 at the world's origin.
 ---@field enabled boolean # False: removed from the simulation, as after the second instability; reset enables it.
 local body_ = {}
 
@@ -183,6 +192,8 @@ local body_ = {}
 ---@field rotation? quat # Rotation of the root's link frame, world: x y z w; setting it rotates the whole body about the root.
 ---@field linear_velocity? vec3like # m/s, -10000 .. 10000. Velocity of the root; setting it sets that of all parts. From 500 m/s on, the stability check restores the body.
 ---@field angular_velocity? vec3like # rad/s, -10000 .. 10000. Angular velocity of the root; setting it rotates the whole body about the root. From 1000 rad/s of tumbling on, the stability check restores the body.
+---@field motion? "dynamic"|"kinematic"|"static" # How the root moves; setting it sets that of all parts (a part without mass can't be dynamic).
+---@field gravity_factor? number # -100 .. 100, default 1. Factor on gravity: 0 floats, negative values rise.
 ---@field self_collision? boolean # default true. Whether its parts collide with each other, except for pairs connected by a joint and excluded_pairs.
 ---@field can_sleep? boolean # default true. Whether its parts may fall asleep at rest; sleeping parts cost nothing until something acts on them.
 ---@field enabled? boolean # False: removed from the simulation, as after the second instability; reset enables it.
@@ -241,6 +252,12 @@ function body_:motor(key) end
 ---@return link
 function body_:link(name) end
 
+---Returns the lowest and the highest coordinates of the body's collision shapes, or of its visuals if it has none: a
+---box along the world's axes. nil if it has neither. Planes don't count.
+---@return vec3? # m, world: the lowest coordinates.
+---@return vec3? # m, world: the highest coordinates.
+function body_:bounds() end
+
 ---Creates a copy of the body as it has been described so far.
 ---@param name string # The name of the copy, unique in the world.
 ---@param opts? body_opts # Such as `position`.
@@ -274,6 +291,7 @@ function body_:state_hash() end
 ---@field body body # read-only. The body that it belongs to.
 ---@field shape shape # read-only. The geometry, which other parts may share.
 ---@field mass number # kg, 0.001 .. 1000000, default 1. Mass; the inertia scales with it. A part created with mass 0 is static.
+---@field motion "dynamic"|"kinematic"|"static" # default dynamic. dynamic: moved by forces; kinematic: moved by setting its pose or velocity, pushes others and is never pushed; static: doesn't move. A part created with mass 0 is static.
 ---@field linear_damping number # 1/s, 0 .. 1, default 0. Fraction of the velocity lost per second.
 ---@field angular_damping number # 1/s, 0 .. 1, default 0. Fraction of the angular velocity lost per second.
 ---@field friction number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
@@ -282,10 +300,14 @@ function body_:state_hash() end
 ---@field friction_direction vec3like # -1 .. 1, default 0 0 0. Direction in the link frame in which friction is scaled by friction_factor; zeros: none.
 ---@field friction_factor number # 0 .. 100, default 1. Ratio of the friction along friction_direction to that across it.
 ---@field restitution number # 0 .. 1, default 0. Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.
+---@field surface_velocity vec3like # m/s, -1000 .. 1000, default 0 0 0. Velocity of its surface along itself, in the link frame, as of a conveyor belt: friction moves parts that touch it at this velocity.
 ---@field self_collision boolean # default true. Whether it collides with other parts of its body.
 ---@field collision_group integer # 0 .. 65535, default 1. Its groups, as a bit set of 16. Two parts collide if each one's group has a bit in the other's mask.
 ---@field collision_mask integer # 0 .. 65535, default 65535. The groups that it collides with, as a bit set of 16.
----@field report_contacts boolean # default false. Report when this part begins to touch another.
+---@field report_contacts boolean # default false. Report contacts of this part with others, and measure their forces.
+---@field stream_contacts boolean # default false. Send each contact point of this part over OSC after each tick, if report_contacts is on.
+---@field tint vec3like # hsb, 0 .. 1, default 0 0 1. Color that multiplies the colors and textures of its shapes: hue, saturation, brightness.
+---@field transparency number # 0 .. 1, default 0. 0: as its shapes; 1: invisible.
 ---@field position vec3like # m, -1000000 .. 1000000. Origin of the link frame, world. Beyond 10 km, the stability check restores the body.
 ---@field rotation quat # Link frame, world: x y z w.
 ---@field linear_velocity vec3like # m/s, -10000 .. 10000. Velocity of the center of mass, world. From 500 m/s on, the stability check restores the body.
@@ -294,10 +316,15 @@ function body_:state_hash() end
 ---@field inertia vec3 # read-only, kg·m². Moments of inertia about the principal axes; static: 0.
 ---@field principal_axes quat # read-only. Principal axes of inertia, world: x y z w.
 ---@field rotation_clamped number # read-only, rad/s. Angular speed clamped off in the last tick; 0: not clamped. Rotation is limited to π/4 per substep, except about a driven joint's axis or a principal axis. More substeps raise the limit.
+---@field contact_count integer # read-only. Number of its contact points, if report_contacts is on.
+---@field contact_normal_force number # read-only, N. Sum of the normal forces at its contact points, mean of the last tick.
+---@field contact_friction_force number # read-only, N. Size of the total friction force on it, mean of the last tick.
+---@field contact_force vec3 # read-only, N. Total force of its contacts on it, world, mean of the last tick.
 local part_ = {}
 
 ---@class part_opts
 ---@field mass? number # kg, 0.001 .. 1000000, default 1. Mass; the inertia scales with it. A part created with mass 0 is static.
+---@field motion? "dynamic"|"kinematic"|"static" # default dynamic. dynamic: moved by forces; kinematic: moved by setting its pose or velocity, pushes others and is never pushed; static: doesn't move. A part created with mass 0 is static.
 ---@field linear_damping? number # 1/s, 0 .. 1, default 0. Fraction of the velocity lost per second.
 ---@field angular_damping? number # 1/s, 0 .. 1, default 0. Fraction of the angular velocity lost per second.
 ---@field friction? number # 0 .. 100, default 0.5. Coulomb friction; the values of two touching parts multiply.
@@ -306,10 +333,14 @@ local part_ = {}
 ---@field friction_direction? vec3like # -1 .. 1, default 0 0 0. Direction in the link frame in which friction is scaled by friction_factor; zeros: none.
 ---@field friction_factor? number # 0 .. 100, default 1. Ratio of the friction along friction_direction to that across it.
 ---@field restitution? number # 0 .. 1, default 0. Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.
+---@field surface_velocity? vec3like # m/s, -1000 .. 1000, default 0 0 0. Velocity of its surface along itself, in the link frame, as of a conveyor belt: friction moves parts that touch it at this velocity.
 ---@field self_collision? boolean # default true. Whether it collides with other parts of its body.
 ---@field collision_group? integer # 0 .. 65535, default 1. Its groups, as a bit set of 16. Two parts collide if each one's group has a bit in the other's mask.
 ---@field collision_mask? integer # 0 .. 65535, default 65535. The groups that it collides with, as a bit set of 16.
----@field report_contacts? boolean # default false. Report when this part begins to touch another.
+---@field report_contacts? boolean # default false. Report contacts of this part with others, and measure their forces.
+---@field stream_contacts? boolean # default false. Send each contact point of this part over OSC after each tick, if report_contacts is on.
+---@field tint? vec3like # hsb, 0 .. 1, default 0 0 1. Color that multiplies the colors and textures of its shapes: hue, saturation, brightness.
+---@field transparency? number # 0 .. 1, default 0. 0: as its shapes; 1: invisible.
 ---@field position? vec3like # m, -1000000 .. 1000000. Origin of the link frame, world. Beyond 10 km, the stability check restores the body.
 ---@field rotation? quat # Link frame, world: x y z w.
 ---@field linear_velocity? vec3like # m/s, -10000 .. 10000. Velocity of the center of mass, world. From 500 m/s on, the stability check restores the body.
@@ -346,6 +377,7 @@ function part_:apply_torque(torque) end
 ---@field linear_stop_cfm vec3like|number # m/N, 0 .. 1, default 0 0 0. Compliance of locks and limits along the axis.
 ---@field angular_stop_erp vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, about the axis.
 ---@field angular_stop_cfm vec3like|number # rad/(N·m), 0 .. 1, default 0 0 0. Compliance of locks and limits about the axis.
+---@field armature number # kg | kg·m², 0 .. 1000000, default 0. Inertia of the motor's rotor along or about the own axis, as it acts on the joint (with a gear, times the square of its ratio); it adds to that of the parts.
 ---@field value number # read-only, m | rad. Position of the own axis.
 ---@field speed number # read-only, m/s | rad/s. Speed of the own axis.
 ---@field angles vec3 # read-only, rad. Angles in the joint's own order of axes, as used by limits and servos.
@@ -353,6 +385,8 @@ function part_:apply_torque(torque) end
 ---@field relrot vec3 # read-only, rad. Rotation of the child's joint frame in the parent's, R = Rz·Ry·Rx, as streamed.
 ---@field position vec3 # read-only, m. Position of the joint on the parent, world.
 ---@field rotation quat # read-only. Rotation of the child's joint frame, world: x y z w.
+---@field reaction_force vec3 # read-only, N. Force of the parent on the child at the joint, joint's frame on the parent, mean of the last tick.
+---@field reaction_torque vec3 # read-only, N·m. Torque of the parent on the child about the joint, joint's frame on the parent, mean of the last tick.
 ---@field axis vec3 # read-only. Direction of the own axis, world.
 local joint_ = {}
 
@@ -368,6 +402,7 @@ local joint_ = {}
 ---@field linear_stop_cfm? vec3like|number # m/N, 0 .. 1, default 0 0 0. Compliance of locks and limits along the axis.
 ---@field angular_stop_erp? vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, about the axis.
 ---@field angular_stop_cfm? vec3like|number # rad/(N·m), 0 .. 1, default 0 0 0. Compliance of locks and limits about the axis.
+---@field armature? number # kg | kg·m², 0 .. 1000000, default 0. Inertia of the motor's rotor along or about the own axis, as it acts on the joint (with a gear, times the square of its ratio); it adds to that of the parts.
 
 ---Drives a joint. Properties with three axes accept a vec3, or one number for the own axis (booleans: for all axes).
 ---@class motor
@@ -375,9 +410,11 @@ local joint_ = {}
 ---@field alive boolean # read-only. True while it exists.
 ---@field body body # read-only. The body that it belongs to.
 ---@field joint joint # read-only. The joint that it drives.
----@field mode "off"|"spin"|"servo"|"spring" # Mode of the own axis; setting it sets the three flags.
+---@field mode "off"|"spin"|"servo"|"spring"|"torque" # Mode of the own axis; setting it sets the axis's four flags.
 ---@field target number # m | rad, -10000 .. 10000. Target of the own axis's servo or spring; full turns count: 20π is ten.
 ---@field speed number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; maximal speed of its servo. From 500 m/s on, the stability check restores the body.
+---@field target_torque number # N | N·m, -1000000000 .. 1000000000. Torque or force of the own axis in mode torque, up to its maximal force.
+---@field no_load_speed number # m/s | rad/s, 0 .. 10000, default 0. Speed of the own axis at which its motor has no force left: the maximal force in the direction of motion decreases linearly from rest to this speed. 0: it doesn't depend on the speed.
 ---@field bounce number # 0 .. 1, default 0. Restitution of limits: after an impact at speed v the axis has speed −bounce·v.
 ---@field damping number # N·s/m | N·m·s/rad, 0 .. 1000000, default 0. Passive damping of every free axis in any mode.
 ---@field target_smoothing number # s, 0 .. 2, default 0. Smoothing time for targets that arrive irregularly, ideally two periods of the stream; delays the motion by 1.5 times this and up to three ticks. 0: a target is reached in one tick.
@@ -390,6 +427,8 @@ local joint_ = {}
 ---@field linear_spring_rest_length vec3like|number # m, -10000 .. 10000, default 0 0 0. Rest position of a spring along each axis.
 ---@field linear_spring_stiffness vec3like|number # N/m, 0 .. 1000000, default 0 0 0. Spring stiffness along each axis.
 ---@field linear_spring_damping vec3like|number # N·s/m, 0 .. 1000000, default 0 0 0. Spring damping along each axis.
+---@field linear_force_active flags3|boolean[]|boolean # default false false false. Given force along each axis; it replaces spin and servo, a spring replaces it.
+---@field linear_force vec3like|number # N, -1000000000 .. 1000000000, default 0 0 0. The given force along each axis, up to max_linear_force.
 ---@field linear_spring_stiffness_applied vec3 # read-only, N/m. Stiffness in effect along each axis, capped for stability.
 ---@field linear_spring_damping_applied vec3 # read-only, N·s/m. Spring damping in effect along each axis.
 ---@field angular_active flags3|boolean[]|boolean # default false false false. Motor on about each axis: a spin, or a servo if that is active too.
@@ -401,6 +440,8 @@ local joint_ = {}
 ---@field angular_spring_rest_length vec3like|number # rad, -10000 .. 10000, default 0 0 0. Rest position of a spring about each axis.
 ---@field angular_spring_stiffness vec3like|number # N·m/rad, 0 .. 1000000, default 0 0 0. Spring stiffness about each axis.
 ---@field angular_spring_damping vec3like|number # N·m·s/rad, 0 .. 1000000, default 0 0 0. Spring damping about each axis.
+---@field angular_torque_active flags3|boolean[]|boolean # default false false false. Given torque about each axis; it replaces spin and servo, a spring replaces it.
+---@field angular_torque vec3like|number # N·m, -1000000000 .. 1000000000, default 0 0 0. The given torque about each axis, up to max_angular_force.
 ---@field angular_spring_stiffness_applied vec3 # read-only, N·m/rad. Stiffness in effect about each axis, capped for stability.
 ---@field angular_spring_damping_applied vec3 # read-only, N·m·s/rad. Spring damping in effect about each axis.
 ---@field applied_force vec3 # read-only, N. Mean force of motors and springs along each axis in the last tick; against a limit, its full force.
@@ -408,9 +449,11 @@ local joint_ = {}
 local motor_ = {}
 
 ---@class motor_opts
----@field mode? "off"|"spin"|"servo"|"spring" # Mode of the own axis; setting it sets the three flags.
+---@field mode? "off"|"spin"|"servo"|"spring"|"torque" # Mode of the own axis; setting it sets the axis's four flags.
 ---@field target? number # m | rad, -10000 .. 10000. Target of the own axis's servo or spring; full turns count: 20π is ten.
 ---@field speed? number # m/s | rad/s, -10000 .. 10000. Speed of the own axis's spin; maximal speed of its servo. From 500 m/s on, the stability check restores the body.
+---@field target_torque? number # N | N·m, -1000000000 .. 1000000000. Torque or force of the own axis in mode torque, up to its maximal force.
+---@field no_load_speed? number # m/s | rad/s, 0 .. 10000, default 0. Speed of the own axis at which its motor has no force left: the maximal force in the direction of motion decreases linearly from rest to this speed. 0: it doesn't depend on the speed.
 ---@field bounce? number # 0 .. 1, default 0. Restitution of limits: after an impact at speed v the axis has speed −bounce·v.
 ---@field damping? number # N·s/m | N·m·s/rad, 0 .. 1000000, default 0. Passive damping of every free axis in any mode.
 ---@field target_smoothing? number # s, 0 .. 2, default 0. Smoothing time for targets that arrive irregularly, ideally two periods of the stream; delays the motion by 1.5 times this and up to three ticks. 0: a target is reached in one tick.
@@ -423,6 +466,8 @@ local motor_ = {}
 ---@field linear_spring_rest_length? vec3like|number # m, -10000 .. 10000, default 0 0 0. Rest position of a spring along each axis.
 ---@field linear_spring_stiffness? vec3like|number # N/m, 0 .. 1000000, default 0 0 0. Spring stiffness along each axis.
 ---@field linear_spring_damping? vec3like|number # N·s/m, 0 .. 1000000, default 0 0 0. Spring damping along each axis.
+---@field linear_force_active? flags3|boolean[]|boolean # default false false false. Given force along each axis; it replaces spin and servo, a spring replaces it.
+---@field linear_force? vec3like|number # N, -1000000000 .. 1000000000, default 0 0 0. The given force along each axis, up to max_linear_force.
 ---@field angular_active? flags3|boolean[]|boolean # default false false false. Motor on about each axis: a spin, or a servo if that is active too.
 ---@field angular_velocity? vec3like|number # rad/s, -10000 .. 10000, default 0 0 0. Speed of a spin about each axis; maximal speed of a servo (0: limited by its force only).
 ---@field max_angular_force? vec3like|number # N·m, 0 .. 1000000000, default 10000 10000 10000. Maximal torque of a spin or servo about each axis.
@@ -432,6 +477,8 @@ local motor_ = {}
 ---@field angular_spring_rest_length? vec3like|number # rad, -10000 .. 10000, default 0 0 0. Rest position of a spring about each axis.
 ---@field angular_spring_stiffness? vec3like|number # N·m/rad, 0 .. 1000000, default 0 0 0. Spring stiffness about each axis.
 ---@field angular_spring_damping? vec3like|number # N·m·s/rad, 0 .. 1000000, default 0 0 0. Spring damping about each axis.
+---@field angular_torque_active? flags3|boolean[]|boolean # default false false false. Given torque about each axis; it replaces spin and servo, a spring replaces it.
+---@field angular_torque? vec3like|number # N·m, -1000000000 .. 1000000000, default 0 0 0. The given torque about each axis, up to max_angular_force.
 
 ---Couples two joints in both directions: position of b = ratio * position of a + offset. Created by sim:add_gear.
 ---@class gear
@@ -516,6 +563,128 @@ function shape_:add_child(child, position, rotation) end
 ---@field [integer] motor
 ---@overload fun(self: body, wanted?: string|motor|(string|motor)[]): fun(): motor, integer
 
+-- Sensors of parts, contacts, rays.
+
+---Returns the contact points of the last tick of a part with `report_contacts`.
+---@return contact_point[]
+function part_:contacts() end
+
+---A contact point of a part.
+---@class contact_point
+---@field part part # The part that it touches.
+---@field position vec3 # Its place in m, world.
+---@field normal vec3 # Direction in which the other part pushes this one, world, unit length.
+---@field friction vec3 # Friction force on this part in N, world, mean of the tick.
+---@field force number # Normal force in N, mean of the tick.
+---@field impulse number # Normal impulse of the tick in N·s.
+---@field distance number # Distance of the surfaces in m; negative: penetration.
+
+---Adds an accelerometer and gyroscope. Without options it is at the origin of the part's link frame.
+---@param name string # A name of your choice, unique among the sensors of the body.
+---@param opts? imu_opts # Such as `position`, in the link frame.
+---@return imu
+function part_:add_imu(name, opts) end
+
+---Adds a range finder, which measures the distance along a ray.
+---@param name string # A name of your choice, unique among the sensors of the body.
+---@param opts? range_finder_opts # Such as `direction`, in the link frame.
+---@return range_finder
+function part_:add_range_finder(name, opts) end
+
+---Adds a proximity zone: a sphere that reports the parts in it. A zone of a static part stays where it is.
+---@param name string # A name of your choice, unique among the sensors of the body.
+---@param opts? zone_opts # Such as `radius`.
+---@return zone
+function part_:add_zone(name, opts) end
+
+---Adds a touch sensor, and sets `report_contacts` of the part.
+---@param name string # A name of your choice, unique among the sensors of the body.
+---@param opts? touch_opts # Such as `position` and `radius` of its region.
+---@return touch
+function part_:add_touch(name, opts) end
+
+---Returns a sensor by name or number (-1: the last).
+---@param key string|integer|imu|range_finder|zone|touch # Its name, its number from 1, or -1 for the last.
+---@return imu|range_finder|zone|touch
+function body_:sensor(key) end
+
+---An accelerometer and gyroscope of a part.
+---@class imu
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field body body # read-only. The body that it belongs to.
+---@field part part # read-only. The part that it is mounted on.
+---@field position vec3like # m, -10000 .. 10000, default 0 0 0. Its place in the part's link frame.
+---@field rotation quat # default 0 0 0 1. Its axes in the part's link frame: x y z w.
+---@field specific_force vec3 # read-only, m/s². Acceleration without gravity, its own axes, mean of the last tick. At rest it points up with 9.81 m/s²; in free fall it is 0.
+---@field angular_velocity vec3 # read-only, rad/s. Angular velocity, its own axes, after the last tick.
+
+---@class imu_opts
+---@field position? vec3like # m, -10000 .. 10000, default 0 0 0. Its place in the part's link frame.
+---@field rotation? quat # default 0 0 0 1. Its axes in the part's link frame: x y z w.
+
+---Measures the distance to the nearest part along a ray.
+---@class range_finder
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field body body # read-only. The body that it belongs to.
+---@field part part # read-only. The part that it is mounted on.
+---@field other? part # read-only. The part that it sees, or nil.
+---@field position vec3like # m, -10000 .. 10000, default 0 0 0. Start of the ray in the part's link frame.
+---@field direction vec3like # -1 .. 1, default 1 0 0. Direction of the ray in the part's link frame; not zero.
+---@field range number # m, 0 .. 1000000, default 10. Length of the ray.
+---@field sees_own_body boolean # default false. Whether it sees other parts of its own body; never its own part.
+---@field hit boolean # read-only. True if it sees a part.
+---@field distance number # read-only, m. Distance to the part seen; none: the range.
+---@field hit_position vec3 # read-only, m. The point seen, world; none: the end of the ray.
+---@field hit_normal vec3 # read-only. Normal of the surface at that point, world; none: zeros.
+
+---@class range_finder_opts
+---@field position? vec3like # m, -10000 .. 10000, default 0 0 0. Start of the ray in the part's link frame.
+---@field direction? vec3like # -1 .. 1, default 1 0 0. Direction of the ray in the part's link frame; not zero.
+---@field range? number # m, 0 .. 1000000, default 10. Length of the ray.
+---@field sees_own_body? boolean # default false. Whether it sees other parts of its own body; never its own part.
+
+---A sphere around a place on a part, which reports the parts in it.
+---@class zone
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field body body # read-only. The body that it belongs to.
+---@field part part # read-only. The part that it is mounted on.
+---@field other? part # read-only. The nearest part in it, or nil.
+---@field position vec3like # m, -10000 .. 10000, default 0 0 0. Its center in the part's link frame.
+---@field radius number # m, 0 .. 1000000, default 1. Parts whose surface is at most this far from the center are inside.
+---@field sees_own_body boolean # default false. Whether it sees other parts of its own body; never its own part.
+---@field sees_static boolean # default false. Whether it sees static parts, such as the floor.
+---@field count integer # read-only. Number of parts inside.
+---@field distance number # read-only, m. Distance of the nearest surface from the center; none: the radius.
+
+---@class zone_opts
+---@field position? vec3like # m, -10000 .. 10000, default 0 0 0. Its center in the part's link frame.
+---@field radius? number # m, 0 .. 1000000, default 1. Parts whose surface is at most this far from the center are inside.
+---@field sees_own_body? boolean # default false. Whether it sees other parts of its own body; never its own part.
+---@field sees_static? boolean # default false. Whether it sees static parts, such as the floor.
+
+---Measures the normal force of contacts in a region of a part.
+---@class touch
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field body body # read-only. The body that it belongs to.
+---@field part part # read-only. The part that it is mounted on.
+---@field position vec3like # m, -10000 .. 10000, default 0 0 0. Center of its region in the part's link frame.
+---@field radius number # m, 0 .. 1000000, default 0. Radius of its region; 0: the whole part.
+---@field count integer # read-only. Number of contact points in the region.
+---@field force number # read-only, N. Sum of the normal forces in the region, mean of the last tick.
+
+---@class touch_opts
+---@field position? vec3like # m, -10000 .. 10000, default 0 0 0. Center of its region in the part's link frame.
+---@field radius? number # m, 0 .. 1000000, default 0. Radius of its region; 0: the whole part.
+
+---The sensors of a body.
+---@class sensor_list
+---@field [integer] imu|range_finder|zone|touch
+---@overload fun(self: body, wanted?: string|imu|range_finder|zone|touch): fun(): imu|range_finder|zone|touch, integer
+
 -- The world, and the callbacks of a scene.
 
 ---The world. The top level of a scene describes the objects; callbacks act on them.
@@ -541,6 +710,10 @@ function shape_:add_child(child, position, rotation) end
 ---@field sleeping_parts integer # read-only. Number of sleeping parts.
 ---@field islands_direct integer # read-only. Island steps (an island: parts connected by joints or contacts) solved by the direct solver, since the start.
 ---@field islands_iterative integer # read-only. Island steps solved by the iterative solver, regularly or as a fallback, since the start.
+---@field momentum vec3 # read-only, kg·m/s. Total momentum of all parts that can move.
+---@field angular_momentum vec3 # read-only, kg·m²/s. Total angular momentum about the world's origin.
+---@field kinetic_energy number # read-only, J. Total energy of motion and rotation.
+---@field potential_energy number # read-only, J. Total energy in the gravity field; 0 at the world's origin.
 sim = {}
 
 ---Loads a body from a URDF file, or from an MJCF file of MuJoCo (.xml).
@@ -618,6 +791,12 @@ function sim:add_sphere_shape(name, radius) end
 ---@return shape
 function sim:add_box_shape(name, size) end
 
+---Creates an ellipsoid.
+---@param name string # A name of your choice, unique among shapes.
+---@param radii vec3like # m, half the lengths of its axes
+---@return shape
+function sim:add_ellipsoid_shape(name, radii) end
+
 ---Creates a cylinder along z.
 ---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
@@ -645,7 +824,7 @@ function sim:add_cone_shape(name, radius, height) end
 
 ---Creates the convex hull of a mesh file, or of points.
 ---@param name string # A name of your choice, unique among shapes.
----@param source string|vec3like[] # A file (STL, OBJ or DAE), or a list of points, m.
+---@param source string|vec3like[] # A file (STL, OBJ, DAE, PLY or glTF), or a list of points, m.
 ---@param opts? mesh_opts
 ---@return shape
 function sim:add_convex_mesh_shape(name, source, opts) end
@@ -654,6 +833,43 @@ function sim:add_convex_mesh_shape(name, source, opts) end
 ---@param name string # A name of your choice, unique among shapes.
 ---@return shape
 function sim:add_compound_shape(name) end
+
+---Returns the first part on the straight line between two points, or nil. It sees the exact shapes in their present
+---poses; a line that starts in a part does not see that part.
+---@param from vec3like # m, world.
+---@param to vec3like # m, world.
+---@param opts? ray_opts
+---@return ray_hit?
+function sim:ray(from, to, opts) end
+
+---Returns the distances of the first parts on the lines from a point to each of the targets; `math.huge` without a part.
+---@param from vec3like # m, world.
+---@param targets vec3like[] # m, world.
+---@param opts? rays_opts
+---@return number[]
+function sim:rays(from, targets, opts) end
+
+---Returns the parts whose surface is at most `radius` away from a point, in stream order, and a list of their distances
+---(negative: the point is inside the part).
+---@param center vec3like # m, world.
+---@param radius number # m, at least 0.
+---@param opts? ray_opts
+---@return part[]
+---@return number[]
+function sim:overlap_sphere(center, radius, opts) end
+
+---@class ray_opts
+---@field ignore? body|part # A body or part that is not seen.
+
+---@class rays_opts: ray_opts
+---@field into? number[] # A table for the result, which is then not created in each call.
+
+---A point at which a line meets a part.
+---@class ray_hit
+---@field part part # The part.
+---@field position vec3 # The point in m, world.
+---@field normal vec3 # Normal of the surface there, world, unit length, outwards.
+---@field distance number # Distance from the start of the line in m.
 
 ---Calls f at the start and after each reset.
 ---@param f fun() # The function to call.
@@ -666,6 +882,23 @@ function sim:on_step(f) end
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
 ---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
 function sim:on_contact(f) end
+
+---Calls f in each tick in which a part with `report_contacts` still touches another: normal impulse of the last tick in
+---N·s, position in m.
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
+function sim:on_contact_stay(f) end
+
+---Calls f when a part with `report_contacts` no longer touches another; the impulse is 0, the position the last one.
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
+function sim:on_contact_end(f) end
+
+---Calls f when a part enters a zone.
+---@param f fun(zone: zone, part: part) # The function to call.
+function sim:on_zone_enter(f) end
+
+---Calls f when a part leaves a zone.
+---@param f fun(zone: zone, part: part) # The function to call.
+function sim:on_zone_leave(f) end
 
 ---Calls f each time the simulation time passes a multiple of `seconds`. Timers set in callbacks survive a reload.
 ---@param seconds number # s, simulation time. Above 0.

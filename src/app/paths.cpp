@@ -88,14 +88,14 @@ std::string state_dir() {
   return home != nullptr && home[0] == '/' ? std::string(home) + "/.local/state/limber" : "";
 }
 
-std::string find_scene(std::string_view name, std::vector<std::string>& searched) {
+std::string find_file_or_folder(std::string_view name, std::vector<std::string>& searched) {
   if (name.empty()) return {};
   std::vector<fs::path> candidates{fs::path(name)};
   const std::string data = data_dir();
   if (!data.empty() && fs::path(name).is_relative()) candidates.push_back(fs::path(data) / name);
   std::error_code error;
   for (const fs::path& candidate : candidates) {
-    if (fs::is_regular_file(candidate, error)) return candidate.string();
+    if (fs::is_regular_file(candidate, error) || fs::is_directory(candidate, error)) return candidate.string();
     // in the data folder itself both places are the same
     const std::string absolute = fs::absolute(candidate, error).lexically_normal().string();
     if (searched.empty() || searched.back() != absolute) searched.push_back(absolute);
@@ -105,8 +105,10 @@ std::string find_scene(std::string_view name, std::vector<std::string>& searched
 
 std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched) {
   if (name.empty()) return "the scene's name is empty; leave it out to play scripts/arms.lua";
-  return fmt::format("scene '{}' not found; searched {}; a scene is a .lua file, such as scripts/hello.lua", name,
-                     fmt::join(searched, " and "));
+  return fmt::format(
+      "'{}' not found; searched {}; play a .lua scene such as scripts/hello.lua, a .urdf or .xml (MJCF) model, or a "
+      "folder with one model",
+      name, fmt::join(searched, " and "));
 }
 
 }  // namespace limber::app

@@ -31,12 +31,11 @@ std::string state_dir();
 /// Returns the executable that a shell would start for this name: the first in PATH; empty: not found. [any]
 std::string find_in_path(std::string_view name);
 
-/// Returns the file as given, else in the data folder; empty if neither exists. `searched` receives all paths that
-/// were tried.
-/// [any]
-std::string find_scene(std::string_view name, std::vector<std::string>& searched);
+/// Returns the file or folder as given, else in the data folder; empty if neither exists. `searched` receives all paths
+/// that were tried. [any]
+std::string find_file_or_folder(std::string_view name, std::vector<std::string>& searched);
 
-/// Returns the error message for a missing scene: the places searched, and how to name a scene.
+/// Returns the error message for a missing scene or model: the places searched, and what can be played.
 std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched);
 
 }  // namespace limber::app

@@ -32,7 +32,13 @@ inline Vec3 rgb_of(const Vec3& hsb) {
   return {channel(0), channel(2.0 / 3), channel(1.0 / 3)};
 }
 
-/// Converts a gamma-encoded channel in [0, 1] to linear light (gamma 2.2).
-inline double linear_light_of(double encoded) { return fixed::pow(encoded, 2.2); }
+/// Converts an sRGB-encoded channel in [0, 1] to linear light (IEC 61966-2-1).
+inline double linear_light_of(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : fixed::pow((encoded + 0.055) / 1.055, 2.4);
+}
+/// Converts linear light in [0, 1] to an sRGB-encoded channel.
+inline double encoded_of(double light) {
+  return light <= 0.0031308 ? 12.92 * light : 1.055 * fixed::pow(light, 1 / 2.4) - 0.055;
+}
 
 }  // namespace limber

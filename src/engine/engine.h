@@ -56,6 +56,13 @@ class Engine {
   Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics = {}) {
     return scenes_.change_scene(file, panics);
   }
+  /// Adds a model to the scene, as if the last line of its file loaded it: in a free place, with a unique name. The
+  /// files of the last successful run are used, and all other objects stay as they are; resets and reloads keep the
+  /// model, another scene drops it. `model`: that of the file `path`. Returns the name and place of its body, or an
+  /// error, and the show continues. [any but sim, during run()]
+  Result<AddedModel> add_model(const std::string& path, const model::BodyModel& model) {
+    return scenes_.add_model(path, model);
+  }
   /// Replaces the show with a take, which plays to its end or until /take/stop; from there the show continues under
   /// live control. If the take is invalid, returns the error, and the show continues. [any but sim, during run()]
   /// `stops`: EngineLink::take_stop_count() at the time of the request; the request is discarded if it has changed

@@ -14,11 +14,19 @@ ShowState::ShowState(EngineLink& engine_link, EngineOptions engine_options)
 std::unique_ptr<Session> ShowState::new_session() {
   sim::WorldSetup setup;
   setup.thread_pool = thread_pool;
-  return std::make_unique<Session>(link, presets, undo_stack, setup);
+  auto fresh = std::make_unique<Session>(link, presets, undo_stack, setup);
+  fresh->world.kinematics().set_static_parts_move(!rules.before_second_revision);
+  return fresh;
+}
+
+void ShowState::set_rules(const ShowRules& new_rules) {
+  rules = new_rules;
+  session->world.kinematics().set_static_parts_move(!rules.before_second_revision);
 }
 
 script::SceneOptions ShowState::scene_options() const {
   script::SceneOptions scene_options = options.scene_options;
+  scene_options.added = added;
   if (rules.limits) scene_options.limits = *rules.limits;
   if (!rules.keeps_timers) scene_options.keep_timers = false;
   if (rules.before_first_revision) scene_options.limits.disable_failed_handlers = false;

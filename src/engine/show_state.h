@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/background_writer.h"
@@ -24,6 +25,7 @@ namespace limber::engine {
 /// The engine's rules that apply: while a take is replayed those of the version that recorded it, else the newest.
 struct ShowRules {
   bool before_first_revision = false;          ///< See kTakeRules.
+  bool before_second_revision = false;         ///< See kTakeRules.
   bool frames_scenes = true;                   ///< The default view frames the bodies of a scene.
   bool keeps_timers = true;                    ///< Reloads keep timers, and console texts set overrides.
   std::optional<script::ScriptLimits> limits;  ///< Limits of scripts, instead of those in the options.
@@ -35,6 +37,8 @@ struct ShowState {
 
   /// Returns an empty session. [any]
   std::unique_ptr<Session> new_session();
+  /// Sets the rules, also of the present session.
+  void set_rules(const ShowRules& new_rules);
   /// Options for runs of the scene, by the rules that apply.
   script::SceneOptions scene_options() const;
   Output& output() { return outputs.current(); }
@@ -67,6 +71,7 @@ struct ShowState {
   History history{overrides, undo_stack, presets, handler_queue};
   script::CallLog call_log;
   std::unique_ptr<Session> session;
+  std::string added;             ///< SceneOptions::added of this scene.
   std::uint64_t scene_seed = 0;  ///< The random seed after the scene's run.
   bool was_paused = false;       ///< As last sent by send_transport().
 };

@@ -1,6 +1,8 @@
 // Simulator: the phases of a pass after its messages.
 #include "engine/simulator.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "sim/world/body.h"
@@ -66,7 +68,7 @@ void Simulator::execute_preset_requests() {
 
 void Simulator::send_contacts() {
   const Store& store = show_.session->store;
-  for (const sim::ContactEvent& contact : show_.session->world.contacts().events()) {
+  for (const sim::ContactEvent& contact : show_.session->world.sensing().contacts().events()) {
     if (!store.alive(contact.part) || !store.alive(contact.other)) continue;
     const auto* part = static_cast<const sim::Part*>(store.object(contact.part));
     const auto* other = static_cast<const sim::Part*>(store.object(contact.other));
@@ -76,6 +78,28 @@ void Simulator::send_contacts() {
                           {Arg::of(part->body().name()), Arg::of(part->name()), Arg::of(other->body().name()),
                            Arg::of(other->name()), Arg::of(contact.impulse), Arg::of(contact.position.x),
                            Arg::of(contact.position.y), Arg::of(contact.position.z)}}});
+  }
+  send_contact_points();
+}
+
+void Simulator::send_contact_points() {
+  const Store& store = show_.session->store;
+  const sim::ContactPoints& points = show_.session->world.sensing().contacts().points();
+  for (const sim::PartContact& contact : points.streamed()) {
+    const sim::ContactPoint& point = points.list()[contact.point];
+    const bool is_a = point.a == contact.part;
+    const NodeId other_id = is_a ? point.b : point.a;
+    if (!store.alive(contact.part) || !store.alive(other_id)) continue;
+    const auto* part = static_cast<const sim::Part*>(store.object(contact.part));
+    const auto* other = static_cast<const sim::Part*>(store.object(other_id));
+    const Vec3 normal = is_a ? point.normal : -point.normal;
+    Message message{"/physics/contact/point",
+                    {Arg::of(part->body().name()), Arg::of(part->name()), Arg::of(other->body().name()),
+                     Arg::of(other->name()), Arg::of(point.impulse / points.seconds())}};
+    for (const Vec3& v : {point.position, normal}) {
+      for (int i = 0; i < 3; i++) message.args.push_back(Arg::of(v[i]));
+    }
+    show_.output().push({Outgoing::Destination::event, {}, std::move(message)});
   }
 }
 

@@ -19,6 +19,7 @@ class Simulator {
   void call_handler();
   void execute_preset_requests();
   void send_contacts();
+  void send_contact_points();
 
   ShowState& show_;
   PanicControl panic_{show_};

@@ -163,6 +163,7 @@ class ModelBuilder {
       primitive.material = material_index(surface);
       primitive.attributes["POSITION"] = add_points(surface);
       primitive.attributes["NORMAL"] = add_vertices(surface.normals);
+      if (!surface.colors.empty()) primitive.attributes["COLOR_0"] = add_vertices(surface.colors);
       const int view = add_view(bytes_of(surface.triangles), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER);
       primitive.indices =
           add_accessor(view, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, surface.triangles.size());

@@ -18,8 +18,10 @@ namespace limber::exporter {
 struct Surface {
   std::vector<std::array<float, 3>> points;
   std::vector<std::array<float, 3>> normals;  ///< Unit, as many as points.
-  std::vector<std::uint32_t> triangles;       ///< Three indices of points each, counter-clockwise seen from outside.
-  Vec3 color{0.5};                            ///< Linear red, green, blue, 0 .. 1.
+  std::vector<std::array<float, 3>>
+      colors;  ///< Linear red, green, blue, multiplied by `color`; as many as points, or none.
+  std::vector<std::uint32_t> triangles;  ///< Three indices of points each, counter-clockwise seen from outside.
+  Vec3 color{0.5};                       ///< Linear red, green, blue, 0 .. 1.
   double alpha = 1;
 };
 using Surfaces = std::vector<Surface>;

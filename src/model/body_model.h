@@ -22,14 +22,16 @@ struct Inertial {
   Mat3 tensor{0};        ///< About the center of mass, along the frame's axes, kg·m².
 };
 
+struct Image;
+struct MeshLook;
 struct MeshModel;
 
-enum class ShapeKind { plane, sphere, box, cylinder, capsule, cone, mesh, compound };
+enum class ShapeKind { plane, sphere, box, cylinder, capsule, cone, mesh, compound, ellipsoid };
 
 /// One collision or visual geometry. The kind decides which fields are used:
-/// plane `normal`; sphere `radius`; box `size` (full edges); cylinder, cone `radius height`;
-/// capsule `radius height` (without the caps); mesh `mesh`; compound none, its children are kept by the Shape of `sim`.
-/// All are centered on the origin; their axis is z.
+/// plane `normal`; sphere `radius`; box `size` (full edges); ellipsoid `size` (full axes); cylinder, cone `radius
+/// height`; capsule `radius height` (without the caps); mesh `mesh`; compound none, its children are kept by the Shape
+/// of `sim`. All are centered on the origin; their axis is z.
 struct ShapeModel {
   ShapeKind kind = ShapeKind::box;
   Vec3 normal{0, 0, 1};
@@ -40,13 +42,15 @@ struct ShapeModel {
   /// dimensions define the collision shape, and `mesh` is used for drawing only, at `mesh_pose` in the shape's frame.
   std::shared_ptr<const MeshModel> mesh;
   Pose mesh_pose;
+  bool mesh_colors = true;  ///< False: a color or texture of the model file replaces the mesh's own colors.
+  std::shared_ptr<const Image> texture;  ///< Multiplies the color; null: none. Meshes need texture coordinates.
 };
 
 /// A geometry placed in its link's frame.
 struct PlacedShape {
   ShapeModel shape;
   Pose origin;                ///< In the link's frame.
-  std::optional<Vec3> color;  ///< r g b 0..1, visuals only.
+  std::optional<Vec3> color;  ///< r g b 0..1, visuals only; replaces the mesh's own colors.
   double alpha = 1;
 };
 
@@ -61,7 +65,8 @@ struct MeshModel {
   double hull_volume = 0;           ///< Volume of the complete convex hull, m³.
   /// The primitive that the complete hull matches (box, sphere or capsule), in the mesh's frame; empty if none.
   std::optional<PlacedShape> primitive;
-  std::uint64_t content_hash = 0;  ///< hash_bytes() of the file.
+  std::uint64_t content_hash = 0;        ///< hash_bytes() of the file.
+  std::shared_ptr<const MeshLook> look;  ///< Colors and textures of its triangles; null: none.
   bool closed = false;     ///< Watertight: `unit_inertial` uses the mesh's own volume, otherwise that of its hull.
   Inertial unit_inertial;  ///< Mass properties at density 1 kg/m³, so that `mass` is the volume in m³.
 };
@@ -84,6 +89,12 @@ std::string_view joint_type_name(JointType type);
 /// The joint type with this name, compared by same_name(); empty if there is none. [any]
 std::optional<JointType> joint_type_named(std::string_view name);
 
+struct SpringModel {
+  double stiffness = 0;  ///< N·m/rad or N/m; 0: there is none.
+  double rest = 0;       ///< Joint value at which it is at rest.
+  double damping = 0;    ///< N·m·s/rad or N·s/m.
+};
+
 struct JointModel {
   std::string name;
   JointType type = JointType::revolute;
@@ -99,8 +110,8 @@ struct JointModel {
   double damping = 0;     ///< <dynamics damping>, N·m·s/rad or N·s/m.
   double friction = 0;    ///< <dynamics friction>, Coulomb limit, N·m or N.
   double start = 0;       ///< Joint value used for `LinkModel::start`.
-  double stiffness = 0;   ///< Above 0, if not driven: a spring of this stiffness, N·m/rad or N/m.
-  double rest = 0;        ///< Joint value at which the spring is at rest.
+  double armature = 0;    ///< Inertia of the rotor, kg·m² or kg.
+  SpringModel spring;     ///< If not driven; else the gains of the actuator, for the mode spring.
   bool driven = true;     ///< False: no actuator of the file drives it, so its motor starts in mode off.
   /// Index of the joint that this one follows; -1: none. value = mimic_multiplier * (value of joint `mimic`) +
   /// mimic_offset. The followed joint never follows another: the importer resolves chains.
@@ -169,6 +180,9 @@ struct BodyModel {
   std::string file;                ///< Path of the model file, for messages.
   std::vector<LinkModel> links;    ///< links[0] is the root.
   std::vector<JointModel> joints;  ///< The parent's index is always less than the child's.
+  /// Joints that close loops: each connects two links of the tree. Their child is never the root, and their value at
+  /// the start is that of the links' start poses; no motor drives them.
+  std::vector<JointModel> loops;
   std::vector<MergedLink> merged;
   /// Pairs of links without a common joint that overlap with all joints at 0; excluded from collision by default.
   std::vector<Overlap> overlaps;

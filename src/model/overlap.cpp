@@ -45,6 +45,8 @@ class ConvexSolid {
     axis_ = pose.rotation * Vec3(0, 0, 1);
     radius_ = shape.radius;
     half_ = shape.height / 2;
+    radii_ =
+        glm::mat3_cast(pose.rotation) * Mat3(shape.size.x / 2, 0, 0, 0, shape.size.y / 2, 0, 0, 0, shape.size.z / 2);
     if (kind_ == ShapeKind::box) {
       for (int i = 0; i < 8; ++i) {
         const Vec3 sign((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, (i & 4) != 0 ? 0.5 : -0.5);
@@ -82,6 +84,8 @@ class ConvexSolid {
         return center_ + end_offset(direction) + radius_ * direction;
       case ShapeKind::cylinder:
         return center_ + end_offset(direction) + rim_offset(direction);
+      case ShapeKind::ellipsoid:
+        return center_ + radii_ * normalized(glm::transpose(radii_) * direction);
       case ShapeKind::cone: {
         const Vec3 apex = center_ + half_ * axis_;
         const Vec3 base = center_ - half_ * axis_ + rim_offset(direction);
@@ -118,6 +122,7 @@ class ConvexSolid {
   Vec3 center_, axis_;
   double radius_ = 0;
   double half_ = 0;
+  Mat3 radii_{0};  // of an ellipsoid: its axes
   std::vector<Vec3> vertices_;
   OverlapBox box_;
 };

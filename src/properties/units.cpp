@@ -35,6 +35,10 @@ constexpr std::array kUnits = {
     Unit{"1/s", "fraction lost per second"},
     Unit{"1/s²", "per second squared"},
     Unit{"kg·m²", "kilogram meter squared"},
+    Unit{"kg | kg·m²", "kilogram along, kilogram meter squared about the axis"},
+    Unit{"kg·m/s", "kilogram meter per second"},
+    Unit{"kg·m²/s", "kilogram meter squared per second"},
+    Unit{"J", "joule"},
     Unit{"× real time", "simulated seconds per real second"},
     Unit{"hsb", "hue, saturation, brightness"},
 };

@@ -98,7 +98,7 @@ TEST(Describe, PrintsJson) {
     EXPECT_TRUE(entry.contains("path") && entry.contains("kind") && entry.contains("doc"));
     if (entry["path"] != "/physics/body/<body>/motor/<motor>/mode") continue;
     found++;
-    EXPECT_EQ(entry["choices"], (std::vector<std::string>{"off", "spin", "servo", "spring"}));
+    EXPECT_EQ(entry["choices"], (std::vector<std::string>{"off", "spin", "servo", "spring", "torque"}));
     EXPECT_EQ(entry["seed"], "/physics/motor/mode");
     EXPECT_EQ(entry["default"], std::vector<double>{2});
   }

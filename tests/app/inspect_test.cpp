@@ -63,6 +63,41 @@ TEST(Inspect, ListsMimicRelations) {
   EXPECT_NE(table.find("\nmimic\n  follow = -2 * lead + 0.5\n"), std::string::npos) << table;
 }
 
+TEST(Inspect, ListsLoops) {
+  model::MeshLibrary meshes;
+  const auto imported =
+      model::import_urdf_text(R"(<robot name="ring" xmlns:limber="x"><link name="a"/><link name="b"/><link name="c"/>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+<joint name="k" type="continuous"><parent link="a"/><child link="c"/><axis xyz="0 0 1"/></joint>
+<limber:loop name="closing" type="ball"><parent link="b"/><child link="c"/></limber:loop></robot>)",
+                              "ring.urdf", {}, meshes);
+  ASSERT_TRUE(imported);
+  EXPECT_EQ(json::parse(inspect_json(**imported)).at("loops"),
+            json::array({{{"name", "closing"}, {"type", "spherical"}, {"parent", "b"}, {"child", "c"}}}));
+  const std::string table = inspect_table(**imported);
+  EXPECT_NE(table.find("\nloops\n  closing: spherical, b -> c\n"), std::string::npos) << table;
+}
+
+TEST(Inspect, ListsColorsAndLinksWithoutCollision) {
+  model::MeshLibrary meshes;
+  const auto imported =
+      model::import_urdf_text(R"(<robot name="two"><material name="skin"><color rgba="0.8 0.6 0.5 1"/></material>
+<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="skin"/></visual>
+<collision><geometry><sphere radius="1"/></geometry></collision></link>
+<link name="b"><visual><geometry><box size="1 1 1"/></geometry><material name="skin"/></visual>
+<visual><geometry><box size="2 1 1"/></geometry><material name=""><color rgba="0 0 1 0.5"/></material></visual></link>
+<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint></robot>)",
+                              "two.urdf", {}, meshes);
+  ASSERT_TRUE(imported);
+  const json all = json::parse(inspect_json(**imported));
+  EXPECT_EQ(all.at("materials"), json({{{"color", {0.8, 0.6, 0.5, 1.0}}, {"links", {"a", "b"}}},
+                                       {{"color", {0.0, 0.0, 1.0, 0.5}}, {"links", json::array({"b"})}}}));
+  EXPECT_EQ(all.at("no_collision"), json::array({"b"}));
+  const std::string table = inspect_table(**imported);
+  EXPECT_NE(table.find("\n  0.8 0.6 0.5 1: a, b\n  0 0 1 0.5: b\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("links without collision shapes (they touch nothing)\n  b\n"), std::string::npos) << table;
+}
+
 TEST(Inspect, JsonLimitsAreNullWhenFree) {
   model::BodyModel m = model();
   json j = json::parse(inspect_json(m))["joints"][0];

@@ -89,6 +89,8 @@ constexpr std::array kLibraries{
     Library{"epoxy/", "ui/render"},
     Library{"GL/", "ui/render"},
     Library{"EGL/", "ui/render"},
+    Library{"png.h", "model"},
+    Library{"jpeglib.h", "model"},
     Library{"stb_", "ui/render"},
     Library{"imgui", "ui/panel"},
     Library{"tiny_gltf.h", "export"},

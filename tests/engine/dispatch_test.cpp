@@ -71,8 +71,8 @@ TEST(MessageDispatcher, AcceptsChoicesByLabelAndByNumber) {
   EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{1}));
   const Outcome word = rig.send("/physics/motor/mode", "arm", "elbow", "sprung");
   EXPECT_EQ(word.kind, Kind::rejected);
-  EXPECT_EQ(word.error, "takes one of off, spin, servo, spring, not 'sprung'");
-  EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 4).kind, Kind::rejected);
+  EXPECT_EQ(word.error, "takes one of off, spin, servo, spring, torque, not 'sprung'");
+  EXPECT_EQ(rig.send(motor("arm", "elbow", "mode"), 5).kind, Kind::rejected);
   EXPECT_EQ(rig.read(motor("arm", "elbow", "mode")), (Values{1}));
 }
 

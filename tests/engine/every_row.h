@@ -42,6 +42,10 @@ inline std::vector<Sample> samples(const Store& store) {
        "/physics/group/swarm",
        {},
        "sim:group_behavior('swarm')"},
+      {&sim::imu_table(), arm + "/sensor/imu", {}, "sim:body('arm'):sensor('imu')"},
+      {&sim::range_finder_table(), arm + "/sensor/eye", {}, "sim:body('arm'):sensor('eye')"},
+      {&sim::zone_table(), arm + "/sensor/zone", {}, "sim:body('arm'):sensor('zone')"},
+      {&sim::touch_table(), arm + "/sensor/skin", {}, "sim:body('arm'):sensor('skin')"},
       {&sim::Gear::table(), "/physics/gear/rack", {}, "sim:gear('rack')"},
       {&store.table(find_property(store, "/scene").value().node), "/scene", {}, "params"},
   };

@@ -41,21 +41,37 @@ TEST(MouseSprings, MoveAFreeBodyWithoutOvershoot) {
   EXPECT_LT(max_x, 1.02);
 }
 
+TEST(MouseSprings, MoveAKinematicPart) {
+  const SceneFile file(kBallScene);
+  Show show(file.path());
+  show.send("/physics/part/hold", "body", "base", 0, 0, 0, 5, 3, 1);
+  show.ticks(2);
+  EXPECT_EQ(show.read("/physics/body/body/part/base/position", 1), 0) << "it is static";
+  show.send("/physics/body/body/part/base/motion", "kinematic");
+  show.ticks(1);
+  show.send("/physics/part/hold", "body", "base", 0, 0, 0.1, 5, 0.5, 1.1);
+  show.ticks(1);
+  EXPECT_NEAR(show.read("/physics/body/body/part/base/position", 1), 0.5, 1e-6);
+  EXPECT_NEAR(show.read("/physics/body/body/part/base/linear_velocity", 1), 0.5 * 60, 1e-3);
+  show.ticks(1);
+  EXPECT_NEAR(show.read("/physics/body/body/part/base/linear_velocity", 1), 0, 1e-3);
+}
+
 TEST(MouseSprings, AreRemovedAfterATimeout) {
   const SceneFile file(kBallScene);
   Show show(file.path());
-  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 100, 0, 1);
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 0, 100, 1);
   show.ticks(32);
-  const double speed = show.read("/physics/body/body/part/ball/linear_velocity", 0);
+  const double speed = show.read("/physics/body/body/part/ball/linear_velocity", 1);
   EXPECT_GT(speed, 1);
   show.ticks(10);
-  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 0), speed) << "after half a second it is free";
-  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 100, 0, 1);
+  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 1), speed) << "after half a second it is free";
+  show.send("/physics/part/hold", "body", "ball", 0, 0, 0, 0, 100, 1);
   show.ticks(1);
   show.send("/physics/part/release", "body", "ball");
-  const double speed_after_release = show.read("/physics/body/body/part/ball/linear_velocity", 0);
+  const double speed_after_release = show.read("/physics/body/body/part/ball/linear_velocity", 1);
   show.ticks(5);
-  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 0), speed_after_release)
+  EXPECT_EQ(show.read("/physics/body/body/part/ball/linear_velocity", 1), speed_after_release)
       << "or at once, by /physics/part/release";
 }
 

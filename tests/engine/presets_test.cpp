@@ -256,7 +256,7 @@ sim:add_body("two"):add_part("tip", ball)
       {"removed body", "sim:add_body(\"two\"):add_part(\"tip\", ball)", "",
        "2 objects were not found (/physics/body/two, /physics/body/two/part/tip)", "/scene/wind", 8},
       {"added body", "sim:add_body(\"two\")", "sim:add_body(\"three\"):add_part(\"tip\", ball) sim:add_body(\"two\")",
-       "15 values are new and stay unchanged", "/scene/wind", 8},
+       "21 values are new and stay unchanged", "/scene/wind", 8},
       {"a part that moves now", "{ mass = 0,", "{ mass = 2,", "1 value is new and stays unchanged",
        "/physics/body/one/part/base/mass", 2},
       {"removed behavior", "local wind = one:add_behavior(\"random_force\", \"wind\", { max_amp = 3 })", "",

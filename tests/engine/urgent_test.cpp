@@ -328,7 +328,7 @@ TEST(FailedHandler, AnOlderTakeCallsItAgain) {
     show.engine.finish_saving();
   }
   std::string bytes = file_bytes(options.record);
-  const std::string rules = ",\"rules\":1";
+  const std::string rules = ",\"rules\":2";
   const std::size_t at = bytes.find(rules);
   ASSERT_NE(at, std::string::npos);
   bytes.erase(at, rules.size());

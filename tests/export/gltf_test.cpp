@@ -206,5 +206,26 @@ TEST_F(GltfTest, ReportsAFullDiskAndLeavesNoFile) {
   EXPECT_EQ(files(), std::vector<std::string>{});
 }
 
+TEST_F(GltfTest, WritesColorsOfPoints) {
+  const auto writer = opened(make_gltf_writer(path("a.glb")));
+  Surfaces surfaces = *triangle({1, 1, 1});
+  surfaces[0].colors.assign(surfaces[0].points.size(), {0.25F, 0.5F, 1});
+  const auto seen = std::make_shared<const Surfaces>(surfaces);
+  ASSERT_EQ(error_text(writer->add_body(three_links("one", seen))), "");
+  const std::vector<MotionSample> frame{posed(0, 0)};
+  ASSERT_EQ(error_text(writer->add_frame(0, frame)), "");
+  ASSERT_EQ(error_text(writer->finish()), "");
+  const std::string glb = text("a.glb");
+  const Json json = json_of(glb);
+  const Json& attributes = json["meshes"][0]["primitives"][0]["attributes"];
+  const Json& colors = json["accessors"][attributes["COLOR_0"].get<std::size_t>()];
+  EXPECT_EQ(colors["count"], json["accessors"][attributes["POSITION"].get<std::size_t>()]["count"]);
+  const Json& view = json["bufferViews"][colors["bufferView"].get<std::size_t>()];
+  const std::size_t binary = glb.size() - json["buffers"][0]["byteLength"].get<std::size_t>();
+  std::array<float, 3> first{};
+  std::memcpy(first.data(), glb.data() + binary + view.value("byteOffset", std::size_t{0}), sizeof first);
+  EXPECT_EQ(first, (std::array<float, 3>{0.25F, 0.5F, 1}));
+}
+
 }  // namespace
 }  // namespace limber::exporter::test

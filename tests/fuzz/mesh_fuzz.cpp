@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "fuzz/target.h"
+#include "model/look/mesh_look.h"
 #include "model/mesh/load.h"
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
@@ -15,7 +16,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                 limber::model::MeshFormat::dae};
   const std::string_view bytes(reinterpret_cast<const char*>(data) + 1, size - 1);
   const limber::Vec3 scale = data[0] % 2 == 0 ? limber::Vec3(1) : limber::Vec3(0.5, -2, 3);
-  const auto format = data[0] >= 200 ? limber::model::MeshFormat::msh : kFormats[data[0] / 2 % 3];
+  using limber::model::MeshFormat;
+  const auto format = data[0] >= 200   ? MeshFormat::msh
+                      : data[0] >= 190 ? MeshFormat::ply
+                      : data[0] >= 180 ? MeshFormat::gltf
+                                       : kFormats[data[0] / 2 % 3];
   const auto mesh = limber::model::mesh_from_bytes(bytes, format, scale, "fuzz");
   if (!mesh) {
     limber::must(!mesh.error().empty());
@@ -26,5 +31,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const unsigned t : m.triangles) limber::must(t < m.vertices.size());
   limber::must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);
   limber::must(std::isfinite(m.hull_error) && m.unit_inertial.mass > 0 && std::isfinite(m.unit_inertial.mass));
+  if (m.look == nullptr) return 0;
+  const std::size_t corners = m.triangles.size();
+  limber::must(m.look->texcoords.empty() || m.look->texcoords.size() == corners);
+  limber::must(m.look->colors.empty() || m.look->colors.size() == corners);
+  limber::must(m.look->materials.empty() || m.look->triangle_materials.size() == corners / 3);
+  for (const std::uint32_t material : m.look->triangle_materials) limber::must(material < m.look->materials.size());
   return 0;
 }

@@ -1,9 +1,12 @@
 // Search for mesh files, and the cache of loaded meshes.
 #include "model/mesh/library.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "files.h"
+#include "model/urdf/import.h"
 #include "solids.h"
 
 namespace limber::model {
@@ -41,6 +44,47 @@ TEST(MeshLibrary, SearchesTheUrdfsFolderFirst) {
   files.write("a/m.stl", "1");
   const std::string near = std::filesystem::canonical(files.write("a/b/m.stl", "2")).string();
   EXPECT_EQ(found("package://m.stl", files.path("a/b"), {files.path("a")}), near);
+}
+
+TEST(MeshLibrary, DecodesEscapesIfTheLiteralFileDoesNotExist) {
+  const test::Files files;
+  const auto canonical = [](const std::string& path) { return std::filesystem::canonical(path).string(); };
+  const std::string blank = canonical(files.write("arm/my arm.stl", "1"));
+  EXPECT_EQ(found("package://arm/my%20arm.stl", files.path("arm")), blank);
+  const std::string literal = canonical(files.write("arm/my%20arm.stl", "2"));
+  EXPECT_EQ(found("package://arm/my%20arm.stl", files.path("arm")), literal);
+}
+
+TEST(MeshLibrary, FindsNamesInAnotherLetterCaseLast) {
+  const test::Files files;
+  const auto canonical = [](const std::string& path) { return std::filesystem::canonical(path).string(); };
+  const std::string upper = canonical(files.write("arm/Meshes/Link.STL", "1"));
+  const std::string folder = files.path("arm/urdf");
+  std::filesystem::create_directories(folder);
+  EXPECT_EQ(found("package://arm/meshes/link.stl", folder), upper);
+  EXPECT_TRUE(differs_in_case("package://arm/meshes/link.stl", upper));
+  EXPECT_TRUE(differs_in_case("../Meshes/link.STL", upper));
+  EXPECT_FALSE(differs_in_case("../Meshes/Link.STL", upper));
+  EXPECT_FALSE(differs_in_case("package://other/Link.STL", upper));
+  const std::string exact = canonical(files.write("link.stl", "2"));
+  EXPECT_EQ(found("package://arm/meshes/link.stl", folder), exact) << "an exact name further away comes first";
+}
+
+TEST(MeshLibrary, AUrdfThatIsALinkFindsMeshesBesideItsTarget) {
+  const test::Files files;
+  files.write("model/meshes/Box.stl", test::binary_stl(test::box({1, 1, 1})));
+  const std::string target = files.write(
+      "model/robot.urdf",
+      "<robot name='r'><link name='a'><visual><geometry><mesh filename='meshes/box.stl'/></geometry></visual>"
+      "</link></robot>");
+  const std::string link = files.write("links/other.txt", "") + ".urdf";
+  std::filesystem::create_symlink(target, link);
+  MeshLibrary meshes;
+  const auto model = import_urdf(link, {}, meshes);
+  ASSERT_TRUE(model) << model.error();
+  EXPECT_EQ((*model)->links.at(0).visuals.size(), 1u);
+  const auto named = [](const Problem& p) { return p.text.find("whose letter case differs") != std::string::npos; };
+  EXPECT_TRUE(std::any_of((*model)->problems.begin(), (*model)->problems.end(), named));
 }
 
 TEST(MeshLibrary, ErrorListsTheSearchedFolders) {

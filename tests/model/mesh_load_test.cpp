@@ -187,7 +187,10 @@ TEST(MeshLoad, DetectsFormatsByExtensionInAnyCase) {
   EXPECT_EQ(*mesh_format_of("a/b.STL"), MeshFormat::stl);
   EXPECT_EQ(*mesh_format_of("b.Obj"), MeshFormat::obj);
   EXPECT_EQ(*mesh_format_of("x.y.dae"), MeshFormat::dae);
-  for (const char* path : {"stl", "x.stlx", "x.ply", "", ".", "x.stl/y"}) EXPECT_FALSE(mesh_format_of(path)) << path;
+  EXPECT_EQ(*mesh_format_of("x.glTF"), MeshFormat::gltf);
+  EXPECT_EQ(*mesh_format_of("x.GLB"), MeshFormat::glb);
+  EXPECT_EQ(*mesh_format_of("x.ply"), MeshFormat::ply);
+  for (const char* path : {"stl", "x.stlx", "x.xyz", "", ".", "x.stl/y"}) EXPECT_FALSE(mesh_format_of(path)) << path;
 }
 
 TEST(MeshLoad, ErrorsNameTheFile) {

@@ -124,12 +124,6 @@ TEST(MjcfHostile, ManyEqualAndUnknownNamesAreReported) {
   EXPECT_EQ((*model)->links.back().name, "n_9000");
 }
 
-TEST(MjcfHostile, BoundsEllipsoids) {
-  std::string many;
-  for (int i = 1; i < 700; ++i) many += "<geom type='ellipsoid' size='.1 .2 " + std::to_string(i) + "'/>";
-  EXPECT_TRUE(has_problem(body_with(many), Severity::error, "there are too many of them", 2));
-}
-
 TEST(MjcfHostile, LoadsWithoutItsMeshes) {
   const auto model = import(
       R"(<mujoco><asset><mesh name="m" file="none.stl"/><mesh name="e" file="/etc/passwd"/><mesh name="v" vertex="1 2 3"/></asset>

@@ -34,7 +34,7 @@ double largest_difference(const Mat3& a, const Mat3& b) {
 }
 
 bool has_mesh_mass(const MjcfBody& body) {
-  const auto is_mesh = [](const MjcfGeom& g) { return g.shape.shape.kind == ShapeKind::mesh && !g.unit; };
+  const auto is_mesh = [](const MjcfGeom& g) { return g.shape.shape.kind == ShapeKind::mesh; };
   return !body.declared && std::any_of(body.geoms.begin(), body.geoms.end(), is_mesh);
 }
 

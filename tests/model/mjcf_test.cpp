@@ -9,7 +9,6 @@
 
 #include "files.h"
 #include "import_text.h"
-#include "model/model_library.h"
 #include "solids.h"
 
 namespace limber::model {
@@ -92,10 +91,8 @@ TEST(Mjcf, ReadsEveryShape) {
   EXPECT_EQ(s[2].shape.height, 0.6);
   expect_near(s[3].shape.size, {0.2, 0.4, 0.6}, 1e-15);
   expect_near(s[3].origin.position, {1, 0, 0}, 0);
-  EXPECT_EQ(s[4].shape.kind, ShapeKind::mesh);
-  double longest = 0;
-  for (const Vec3& v : s[4].shape.mesh->vertices) longest = std::max(longest, std::abs(v.z));
-  EXPECT_NEAR(longest, 0.3, 1e-6);
+  EXPECT_EQ(s[4].shape.kind, ShapeKind::ellipsoid);
+  expect_near(s[4].shape.size, {0.2, 0.4, 0.6}, 1e-15);
   EXPECT_NEAR(s[5].shape.height, 5, 1e-12);
   expect_near(s[5].origin.position, {1.5, 0, 2}, 1e-12);
   expect_near(s[5].origin.rotation * Vec3(0, 0, 1), {0.6, 0, 0.8}, 1e-12);
@@ -323,13 +320,49 @@ TEST(Mjcf, ActuatorsLimitTheirJoint) {
       << all_problems(passive);
 }
 
+TEST(Mjcf, ReadsTheGainsOfPositionActuators) {
+  const auto gains = [](const std::string& actuator) {
+    return jointed("<joint name='j' ref='90'/>", "<actuator>" + actuator + "</actuator>").joints[0].spring;
+  };
+  const SpringModel position = gains("<position joint='j' kp='5' kv='.5' gear='2'/>");
+  EXPECT_EQ(position.stiffness, 20);
+  EXPECT_EQ(position.damping, 2);
+  EXPECT_NEAR(position.rest, -kPi / 2, 1e-12);
+  const SpringModel general = gains("<general joint='j' gainprm='5' biastype='affine' biasprm='0 -5 -.5'/>");
+  EXPECT_EQ(general.stiffness, 5);
+  EXPECT_EQ(general.damping, 0.5);
+  EXPECT_EQ(gains("<motor joint='j'/>").stiffness, 0);
+  EXPECT_EQ(gains("<general joint='j' biasprm='0 -5 -.5'/>").stiffness, 0) << "without bias";
+}
+
+TEST(Mjcf, ReadsArmatures) {
+  EXPECT_EQ(jointed("<joint armature='.2'/>").joints[0].armature, 0.2);
+  EXPECT_EQ(jointed("<joint armature='-1'/>").joints[0].armature, 0);
+  EXPECT_TRUE(has_problem(jointed("<joint type='ball' armature='1'/>"), Severity::note, "armature of a ball joint", 1));
+}
+
+TEST(Mjcf, SuggestsNamesOfMisspelledElements) {
+  const auto suggests = [](const std::string& text, const std::string& name) {
+    const BodyModel m =
+        mjcf("<mujoco><worldbody><body name='b'><joint/><geom size='.1'/></body></worldbody>" + text + "</mujoco>");
+    EXPECT_NE(all_problems(m).find("Did you mean <" + name + ">?"), std::string::npos) << all_problems(m);
+  };
+  suggests("<actuator><moter joint='j'/></actuator>", "motor");
+  suggests("<contact><exclud body1='b' body2='b'/></contact>", "exclude");
+  suggests("<tendon><fixd/></tendon>", "fixed");
+  suggests("<equality><conect/></equality>", "connect");
+  suggests("<asset><materiel name='m'/></asset>", "material");
+  suggests("<default><goem/></default>", "geom");
+  suggests("<actuators/>", "actuator");
+}
+
 TEST(Mjcf, JointsWithoutAnActuatorKeepTheirSpring) {
   const std::string joint = "<joint name='j' stiffness='3' springref='90' ref='45'/>";
   const BodyModel passive = jointed(joint);
-  EXPECT_EQ(passive.joints[0].stiffness, 3);
-  EXPECT_NEAR(passive.joints[0].rest, kPi / 4, 1e-12);
+  EXPECT_EQ(passive.joints[0].spring.stiffness, 3);
+  EXPECT_NEAR(passive.joints[0].spring.rest, kPi / 4, 1e-12);
   const BodyModel driven = jointed(joint, "<actuator><motor joint='j'/></actuator>");
-  EXPECT_EQ(driven.joints[0].stiffness, 0);
+  EXPECT_EQ(driven.joints[0].spring.stiffness, 0);
   EXPECT_TRUE(has_problem(driven, Severity::warning, "1 joint has an actuator and a spring, first 'j'", 1))
       << all_problems(driven);
   EXPECT_TRUE(has_problem(jointed("<joint type='ball' stiffness='3'/>"), Severity::warning,
@@ -350,11 +383,10 @@ TEST(Mjcf, JointEqualitiesFollow) {
   const BodyModel m = mjcf(
       R"(<mujoco><worldbody><body name="t"><geom size=".1"/><body name="a"><joint name="j" type="slide"/><geom size=".1"/></body>
 <body name="b"><joint name="k" type="slide"/><geom size=".1"/></body></body></worldbody>
-<equality><joint joint1="k" joint2="j" polycoef=".1 -2 0 0 0"/><weld body1="a" body2="b"/></equality></mujoco>)");
+<equality><joint joint1="k" joint2="j" polycoef=".1 -2 0 0 0"/></equality></mujoco>)");
   EXPECT_EQ(m.joints[1].mimic, 0);
   EXPECT_EQ(m.joints[1].mimic_multiplier, -2);
   EXPECT_EQ(m.joints[1].mimic_offset, 0.1);
-  EXPECT_TRUE(has_problem(m, Severity::warning, "<weld> in <equality> ignored", 3)) << all_problems(m);
 }
 
 TEST(Mjcf, ChoosesATree) {
@@ -420,37 +452,22 @@ TEST(Mjcf, ReadsMeshesWithScaleAndReference) {
   EXPECT_EQ((*model)->files.size(), 2u);
 }
 
-TEST(Mjcf, IncludesFilesAndReportsTheirLines) {
-  const test::Files files;
-  files.write("parts/leg.xml",
-              "<mujocoinclude>\n<body name='leg'><joint/>\n<geom size='.1' typ='box'/></body></mujocoinclude>");
-  const std::string path = files.write("model.xml",
-                                       "<mujoco><worldbody>\n<body name='t'><freejoint/><geom size='.1'/>\n<include "
-                                       "file='parts/leg.xml'/></body></worldbody></mujoco>");
-  const auto model = import_model(path);
-  ASSERT_TRUE(model) << model.error();
-  ASSERT_EQ((*model)->links.size(), 2u) << all_problems(**model);
-  EXPECT_TRUE(has_problem(**model, Severity::warning, "leg.xml line 3: <geom> has no attribute 'typ'; ignored", 3))
-      << all_problems(**model);
-  ASSERT_EQ((*model)->files.size(), 2u);
-  EXPECT_TRUE((*model)->files[1].ends_with("parts/leg.xml"));
-  EXPECT_NE((*model)->file_hashes[1], 0u);
-}
-
 TEST(Mjcf, ReportsWhatItDoesNotSupportOncePerKind) {
   const BodyModel m = mjcf(
-      R"(<mujoco><option timestep=".01"/><visual/><worldbody><light/><light/><body name="b"><joint name="j" stiffness="3" armature="1"/>
+      R"(<mujoco><option timestep=".01"/><visual/><worldbody><light/><light/><body name="b"><joint name="j" stiffness="3"/>
 <geom size=".1" friction="1"/><geom type="hfield" hfield="h"/><composite/></body></worldbody>
-<tendon><fixed><joint joint="j" coef="1"/></fixed></tendon><sensor><gyro/><gyro/></sensor><actuator><muscle tendon="t"/></actuator></mujoco>)");
+<tendon><fixed stiffness="1"><joint joint="j" coef="1"/></fixed><spatial/></tendon><sensor><gyro/><gyro/></sensor><actuator><muscle tendon="t"/></actuator></mujoco>)");
   EXPECT_TRUE(has_problem(m, Severity::note, "<option> ignored", 1)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<light> ignored: the scene sets the view (2 places)", 1))
       << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::note, "<joint armature> ignored", 1)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<geom>: friction has no effect", 2)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::error, "<geom type='hfield'> ignored", 2)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::warning, "<composite> inside <body> ignored", 2)) << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::warning, "<fixed> in <tendon> ignored", 3)) << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::note, "<gyro> in <sensor> ignored: it is not supported (2 places)", 3))
+  EXPECT_TRUE(has_problem(m, Severity::warning, "stiffness, damping, friction and limits of <fixed>", 3))
+      << all_problems(m);
+  EXPECT_TRUE(has_problem(m, Severity::warning, "<spatial> in <tendon> ignored: it pulls at nothing", 3))
+      << all_problems(m);
+  EXPECT_TRUE(has_problem(m, Severity::note, "<gyro> in <sensor> ignored: nothing is measured (2 places)", 3))
       << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::warning, "<muscle> that drives no joint ignored", 3)) << all_problems(m);
 }
@@ -466,22 +483,6 @@ TEST(Mjcf, NamesUnnamedAndRepeatedElements) {
   EXPECT_EQ(m.joints[2].name, "x_2");
   EXPECT_TRUE(has_problem(m, Severity::error, "joint 'x' is declared twice; the second is called 'x_2'", 2))
       << all_problems(m);
-}
-
-TEST(Mjcf, LibraryReadsItAgainWhenAnIncludedFileChanges) {
-  const test::Files files;
-  files.write("leg.xml", "<mujoco><body name='leg'><joint/><geom size='.1'/></body></mujoco>");
-  const std::string path = files.write(
-      "model.xml",
-      "<mujoco><worldbody><body name='t'><geom size='.1'/><include file='leg.xml'/></body></worldbody></mujoco>");
-  ModelLibrary library;
-  const auto before = library.load(path);
-  ASSERT_TRUE(before);
-  EXPECT_EQ(library.load(path).value(), *before);
-  files.write("leg.xml", "<mujoco><body name='longleg'><joint/><geom size='.1'/></body></mujoco>");
-  const auto after = library.load(path);
-  ASSERT_TRUE(after);
-  EXPECT_EQ((*after)->links.back().name, "longleg");
 }
 
 }  // namespace

@@ -186,7 +186,7 @@ const std::map<std::string, Expected> kBad{
     {"two_roots", {1, 0, "not connected"}},
     {"type_case", {2, 1, "read as revolute"}},
     {"type_missing", {2, 1, "no type"}},
-    {"type_unknown", {2, 1, "not a URDF joint type"}},
+    {"type_unknown", {2, 1, "the limits of a spherical joint are ignored"}},
     {"undefined_parent", {1, 0, "does not exist"}},
     {"unnamed_link", {0, 0, "no name"}},
     {"unnamed_link_two", {0, 0, "no name"}},

@@ -103,8 +103,8 @@ TEST_P(PartlyGood, LoadsAndReports) {
 INSTANTIATE_TEST_SUITE_P(
     Files, PartlyGood,
     ::testing::Values(
-        PartlyValidFile{"type_unknown", LINKS_AB J("ball", ""), 2, 1, Severity::error,
-                        "'ball' is not a URDF joint type", 2},
+        PartlyValidFile{"type_unknown", LINKS_AB J("hinge", ""), 2, 1, Severity::error,
+                        "'hinge' is not a URDF joint type", 2},
         PartlyValidFile{"type_case", LINKS_AB J("Revolute", ""), 2, 1, Severity::warning, "read as revolute", 2},
         PartlyValidFile{"type_missing",
                         LINKS_AB "<joint name=\"j\"><parent link=\"a\"/><child link=\"b\"/></joint></robot>", 2, 1,

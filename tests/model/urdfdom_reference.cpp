@@ -61,7 +61,7 @@ void write_joint(const UrdfJoint& j, std::size_t at, int parent, std::string& ou
       joint_type_name(j.type), parent, origin_text(j.origin), vec(j.axis));
   if (j.type == JointType::revolute || j.type == JointType::prismatic || j.type == JointType::continuous) {
     out += fmt::format("<limit lower=\"{:.17g}\" upper=\"{:.17g}\" effort=\"{:.17g}\" velocity=\"{:.17g}\"/>", j.lower,
-                       j.upper, j.effort, j.velocity);
+                       j.upper, j.effort.value_or(0), j.velocity.value_or(0));
   }
   if (j.type != JointType::fixed) {
     out += fmt::format("<dynamics damping=\"{:.17g}\" friction=\"{:.17g}\"/>", j.damping, j.friction);

@@ -1,6 +1,7 @@
 // Compares the URDF reader with urdfdom, an independent one, on all files.
 #include "urdfdom_reference.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -73,6 +74,9 @@ TEST(UrdfdomReference, AgreesOnAllFiles) {
       if (!file) continue;
       const Result<std::vector<UrdfNode>> tree = find_tree(*file, problems);
       if (!tree) continue;
+      // ball joints are those of dialects, which urdfdom rejects
+      const auto is_ball = [](const UrdfJoint& joint) { return joint.type == JointType::spherical; };
+      if (std::any_of(file->joints.begin(), file->joints.end(), is_ball)) continue;
       EXPECT_EQ(urdfdom_differences(*file, *tree), std::vector<std::string>()) << entry.path();
       files++;
     }

@@ -36,6 +36,11 @@ for i, name in ipairs { "arm", "the_upper_segment_of_the_left_leg", "the_lower_s
   body:add_behavior("force", "push_the_upper_segment_of_the_left_leg", { amp = 0 })
   body:add_behavior("force", "push_the_lower_segment_of_the_left_leg", { amp = 0 })
 end
+local tip = sim.bodies[1]:part("tip")
+tip:add_imu("imu")
+tip:add_range_finder("range finder")
+tip:add_zone("zone")
+tip:add_touch("touch")
 for _, kind in ipairs { "alignment", "cohesion", "separation" } do
   sim:add_group_behavior(kind, "all_" .. kind)
 end

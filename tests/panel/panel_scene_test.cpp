@@ -43,6 +43,70 @@ TEST(PanelScene, DeselectsRemovedObject) {
   EXPECT_EQ(fixture.gui->context().selected, "");
 }
 
+struct SavedScene {
+  std::string file;
+  bool overwrite = false;
+};
+
+// A panel that saves scenes to `saved`; `error`: the result of each attempt.
+GuiOptions saving_options(const std::string& file, std::vector<SavedScene>& saved, const std::string& error) {
+  GuiOptions options = PanelFixture::headless();
+  options.scene_file = file;
+  options.save_scene = [&saved, error](const std::string& name, bool overwrite) {
+    saved.push_back({name, overwrite});
+    return error.empty() ? Result<void>() : Result<void>(Error{error});
+  };
+  return options;
+}
+
+TEST(PanelScene, SavesTheSceneOfAModel) {
+  std::vector<SavedScene> saved;
+  PanelFixture fixture(kScene, 1600, 900, saving_options("/nowhere/robot.lua", saved, ""));
+  fixture.click("scene.save");
+  fixture.click("scene.save_write");
+  ASSERT_EQ(saved.size(), 1u);
+  EXPECT_EQ(saved[0].file, "/nowhere/robot.lua");
+  EXPECT_FALSE(saved[0].overwrite);
+  EXPECT_FALSE(fixture.is_visible("scene.save_write")) << "the window is closed";
+  EXPECT_NE(fixture.gui->context().notice.text.find("/nowhere/robot.lua"), std::string::npos);
+}
+
+TEST(PanelScene, SavesWithEnter) {
+  std::vector<SavedScene> saved;
+  PanelFixture fixture(kScene, 1600, 900, saving_options("/nowhere/robot.lua", saved, ""));
+  fixture.click("scene.save");
+  fixture.key(GuiKey::enter);
+  EXPECT_EQ(saved.size(), 1u);
+}
+
+TEST(PanelScene, AsksBeforeItReplacesAFile) {
+  std::vector<SavedScene> saved;
+  const engine::test::SceneFile existing("-- mine");
+  PanelFixture fixture(kScene, 1600, 900, saving_options(existing.path(), saved, ""));
+  fixture.click("scene.save");
+  fixture.click("scene.save_write");
+  EXPECT_TRUE(saved.empty());
+  fixture.click("confirmation.cancel");
+  EXPECT_TRUE(saved.empty());
+  fixture.click("scene.save");
+  fixture.click("scene.save_write");
+  fixture.click("confirmation.confirm");
+  ASSERT_EQ(saved.size(), 1u);
+  EXPECT_TRUE(saved[0].overwrite);
+}
+
+TEST(PanelScene, KeepsTheWindowOpenIfSavingFails) {
+  std::vector<SavedScene> saved;
+  PanelFixture fixture(kScene, 1600, 900, saving_options("/nowhere/robot.lua", saved, "no such folder"));
+  fixture.click("scene.save");
+  fixture.click("scene.save_write");
+  EXPECT_TRUE(fixture.is_visible("scene.save_write"));
+  fixture.click("scene.save_cancel");
+  EXPECT_FALSE(fixture.is_visible("scene.save_write"));
+}
+
+TEST(PanelScene, OffersNoSavingWithoutAModel) { EXPECT_FALSE(PanelFixture().is_visible("scene.save")); }
+
 TEST(PanelScene, CostDependsOnVisibleLines) {
   PanelFixture fixture(R"(
     sim:add_sphere_shape("ball", 0.1)

@@ -40,9 +40,9 @@ end
 
 class PanelFixture {
  public:
-  explicit PanelFixture(const std::string& scene = kScene, double width = 1600, double height = 900)
+  explicit PanelFixture(const std::string& scene = kScene, double width = 1600, double height = 900,
+                        GuiOptions options = headless())
       : file_(scene), show(file_.path()), width_(width), height_(height) {
-    GuiOptions options = headless();
     options.copy = [this](const std::string& text) { clipboard = text; };
     options.behavior_types = {"force", "torque"};
     gui = std::make_unique<Gui>(show.link, std::move(options));

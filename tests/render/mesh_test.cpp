@@ -52,8 +52,11 @@ TEST(Mesh, PrimitivesAreClosedAndHaveTheirSize) {
     Vec3 half;
     double volume;
   };
+  model::ShapeModel egg = box({0.2, 0.4, 1});
+  egg.kind = model::ShapeKind::ellipsoid;
   const Case cases[] = {
       {box({0.2, 0.4, 1}), {0.1, 0.2, 0.5}, 0.08},
+      {egg, {0.1, 0.2, 0.5}, pi / 6 * 0.08},
       {round(model::ShapeKind::sphere, 0.5), Vec3(0.5), pi / 6},
       {round(model::ShapeKind::capsule, 0.2, 1), {0.2, 0.2, 0.7}, pi * 0.04 + 4 * pi / 3 * 0.008},
       {round(model::ShapeKind::cylinder, 0.2, 1), {0.2, 0.2, 0.5}, pi * 0.04},
@@ -164,7 +167,7 @@ TEST(Mesh, SharesVertices) {
   }
   EXPECT_EQ(with_shared_vertices(primitive_mesh(model::ShapeKind::box, kDetailLevels - 1)).vertices.size(), 24U);
   EXPECT_EQ(with_shared_vertices(primitive_mesh(model::ShapeKind::box, kDetailLevels - 1)).indices.size(), 3U * 44);
-  EXPECT_TRUE(with_shared_vertices({}).indices.empty());
+  EXPECT_TRUE(with_shared_vertices(MeshVertices{}).indices.empty());
 }
 
 }  // namespace

@@ -60,7 +60,11 @@ TEST(Pick, TestsTheExactShape) {
     model::ShapeModel model;
     Vec3 on, beside;
   };
-  const Case cases[] = {{"cylinder", round(model::ShapeKind::cylinder, 0.5, 2), {0.45, 0, 0.95}, {0.55, 0, 0.95}},
+  model::ShapeModel egg;
+  egg.kind = model::ShapeKind::ellipsoid;
+  egg.size = {1, 0.4, 2};
+  const Case cases[] = {{"egg", egg, {0.3, 0, 0.75}, {0.3, 0, 0.85}},
+                        {"cylinder", round(model::ShapeKind::cylinder, 0.5, 2), {0.45, 0, 0.95}, {0.55, 0, 0.95}},
                         {"capsule", round(model::ShapeKind::capsule, 0.5, 1), {0.3, 0, 0.85}, {0.45, 0, 0.95}},
                         {"cone", round(model::ShapeKind::cone, 0.5, 2), {0.2, 0, 0}, {0.4, 0, 0.6}},
                         {"mesh", triangle, {-0.5, 0, -0.5}, {0.5, 0, 0.5}}};

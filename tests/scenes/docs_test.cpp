@@ -78,8 +78,10 @@ TEST_P(LuaPage, EveryBehaviorOnThePageIsPlayed) {
 INSTANTIATE_TEST_SUITE_P(Docs, LuaPage,
                          testing::Values("docs/learn/scripting.md", "docs/howto/bodies.md",
                                          "docs/reference/behaviors.md", "docs/howto/presets.md", "docs/howto/shapes.md",
-                                         "docs/howto/joints.md", "docs/howto/controllers.md", "docs/howto/reading.md",
-                                         "docs/howto/camera.md", "docs/howto/time.md", "docs/howto/faq.md"),
+                                         "docs/howto/textures.md", "docs/howto/joints.md", "docs/howto/platforms.md",
+                                         "docs/howto/controllers.md", "docs/howto/reading.md", "docs/howto/sensors.md",
+                                         "docs/howto/camera.md", "docs/howto/time.md", "docs/howto/faq.md",
+                                         "docs/howto/loops.md"),
                          [](const auto& page) { return std::filesystem::path(page.param).stem().string(); });
 
 TEST(Docs, TheTutorialIsComplete) { EXPECT_GE(blocks_of_page("docs/learn/scripting.md").size(), 12u); }

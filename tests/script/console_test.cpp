@@ -181,9 +181,9 @@ TEST_F(Console, CompletesGlobalsMembersAndMethods) {
             "add_capsule_shape add_compound_shape add_cone_shape add_convex_mesh_shape "
             "add_cylinder_shape");
   EXPECT_EQ(completions("arm."),
-            "alive angular_velocity asleep behaviors can_sleep enabled excluded_pairs joints linear_velocity motors "
-            "name parts position "
-            "root rotation self_collision");
+            "alive angular_momentum angular_velocity asleep behaviors can_sleep center_of_mass enabled excluded_pairs "
+            "gravity_factor joints kinetic_energy linear_velocity mass momentum motion motors name parts position "
+            "potential_energy root rotation self_collision sensors");
   EXPECT_EQ(completions("arm:mo"), "motor motors");
   EXPECT_EQ(completions("params.w"), "warmth wind");
   EXPECT_EQ(completions("state."), "hits");

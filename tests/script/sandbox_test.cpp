@@ -226,10 +226,13 @@ TEST(Sandbox, HasSortAndGsub) {
 TEST(Sandbox, AStackOverflowHasAPlace) {
   for (const char* text : {"local function f(x)\n  return math.min(1, f(x))\nend\nf('x')",
                            "local function f(x)\n  return (x .. 'a'):sub(1, -1) .. f(x)\nend\nf('x')",
-                           "local function f(x)\n  return 1 + f(x, f)\nend\nf('x')",
-                           "local function f()\n  return (('ab'):gsub('(a)', f))\nend\nf()"}) {
+                           "local function f(x)\n  return 1 + f(x, f)\nend\nf('x')"}) {
     EXPECT_EQ(error_of(text), "scripts/scene.lua:2: stack overflow") << text;
   }
+  // without a line where the overflow ends a compiled trace
+  const std::string overflow = error_of("local function f()\n  return (('ab'):gsub('(a)', f))\nend\nf()");
+  EXPECT_TRUE(overflow == "scripts/scene.lua:2: stack overflow" || overflow == "scripts/scene.lua: stack overflow")
+      << overflow;
 }
 
 TEST(Sandbox, CoroutinesHaveALimitedDepth) {

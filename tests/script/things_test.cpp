@@ -246,6 +246,7 @@ TEST(Things, HaveMembersThatAreNotProperties) {
   EXPECT_EQ(arm_value("arm:link('tip').position, arm:link('tip').name, arm:link('tip').body"),
             "vec3(0, 0, 1.2)\ttip\tbody 'arm'");
   EXPECT_EQ(arm_value("sim.alive, arm.alive, arm:link('tip').alive"), "true\ttrue\ttrue");
+  EXPECT_EQ(arm_value("sim:add_body('empty'):bounds()"), "nil") << "it has no shape";
   EXPECT_EQ(arm_value("#arm:state_hash(), #sim:state_hash(), arm:state_hash() ~= sim:state_hash()"), "16\t16\ttrue");
 }
 
@@ -305,7 +306,7 @@ TEST(Things, HaveErrorTexts) {
       {"link.rotation = vec3()", "part 'arm/link': 'rotation' takes a quat, not vec3(0, 0, 0)"},
       {"link.report_contacts = 1", "part 'arm/link': 'report_contacts' takes true or false, not 1"},
       {"m1.mode = 'sevo'", "motor 'arm/joint_1': 'mode' can't be 'sevo'; did you mean 'servo'?"},
-      {"m1.mode = 2", "motor 'arm/joint_1': 'mode' takes one of 'off' 'spin' 'servo' 'spring', not 2"},
+      {"m1.mode = 2", "motor 'arm/joint_1': 'mode' takes one of 'off' 'spin' 'servo' 'spring' 'torque', not 2"},
       {"m1.angular_active = 1",
        "motor 'arm/joint_1': 'angular_active' takes three booleans, or one for all axes, not 1"},
       {"m1.angular_active[3] = true", "three booleans are immutable; assign all of them: { false, false, true }"},

@@ -21,7 +21,7 @@ struct ContactsFixture : WorldFixture {
     std::vector<ContactEvent> all;
     for (int i = 0; i < n; i++) {
       ticks(1);
-      all.insert(all.end(), world.contacts().events().begin(), world.contacts().events().end());
+      all.insert(all.end(), world.sensing().contacts().events().begin(), world.sensing().contacts().events().end());
     }
     return all;
   }

@@ -230,6 +230,25 @@ TEST(ContinuousCollision, AJointedHammerStopsAsAWhole) {
   }
 }
 
+// A kinematic paddle, which nothing stops, hits balls at rest.
+TEST(ContinuousCollision, AKinematicPaddlePassesNoBall) {
+  for (const double speed : {3.0, 20.0, 120.0}) {
+    for (const double restitution : {0.0, 1.0}) {
+      WorldFixture s;
+      Part& ball = s.add_single_part(sphere_model(0.02), 0.1, {{1, 0, 0}, quat_identity()});
+      Part& paddle = s.add_single_part(box_model({0.02, 0.5, 0.5}), 0);
+      for (Part* part : {&ball, &paddle}) s.set(part->id(), "restitution", {restitution});
+      for (int tick = 0; tick < 60; tick++) {
+        s.set(paddle.id(), "linear_velocity", {speed, 0, 0});
+        s.ticks(1);
+        EXPECT_GT(ball.pose().position.x, paddle.pose().position.x) << speed << ' ' << restitution;
+      }
+      // a predicted contact may absorb a part of the bounce
+      EXPECT_GT(s.vec(ball.id(), "linear_velocity").x, 0.98 * speed);
+    }
+  }
+}
+
 TEST(ContinuousCollision, IsTheSameForAnyNumberOfThreads) {
   const auto hash = [](int threads) {
     Store store;

@@ -60,6 +60,16 @@ void stop_cfm(bool linear) {
   }
 }
 
+// A torque accelerates the own axis by torque / (inertia + armature).
+void armature() {
+  for (const double armature : {0.0, 0.05, 3.0}) {
+    OneAxisFixture a(5);
+    a.set(a.joint.id(), "armature", {armature});
+    a.ticks_with_load(30, 0.4);
+    EXPECT_NEAR(a.v(), 0.4 / (a.inertia() + armature) * 0.5, 1e-5) << armature;
+  }
+}
+
 }  // namespace
 
 void add_joint_effects(PropertyEffects& effects) {
@@ -70,6 +80,7 @@ void add_joint_effects(PropertyEffects& effects) {
     effects[{"Joint", side + "stop_erp"}] = [=] { stop_erp(linear); };
     effects[{"Joint", side + "stop_cfm"}] = [=] { stop_cfm(linear); };
   }
+  effects[{"Joint", "armature"}] = armature;
 }
 
 }  // namespace limber::sim::test

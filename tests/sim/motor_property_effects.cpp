@@ -208,7 +208,7 @@ void mode() {
     o.set(o.motor.id(), "mode", {3});
     o.ticks(1);
     EXPECT_LT(o.v(), 3);  // the spring pulls back
-    for (const double m : {0., 1., 2., 3.}) {
+    for (const double m : {0., 1., 4., 2., 4., 3.}) {
       o.set(o.motor.id(), "mode", {m});
       EXPECT_EQ(o.number(o.motor.id(), "mode"), m);
     }
@@ -256,6 +256,59 @@ void target_smoothing() {
   }
 }
 
+// A given load accelerates by load/inertia, up to the maximal force.
+void given_load(OneAxisFixture& a) {
+  const std::string load = a.axis < 3 ? "force" : "torque";
+  a.set_motor(load, 0.3);
+  a.ticks(30);
+  EXPECT_EQ(a.v(), 0);  // not active
+  a.set_motor(load + "_active", 1);
+  a.ticks(30);
+  EXPECT_NEAR(a.v(), 0.3 / a.inertia() * 0.5, 1e-4);
+  const Vec3 applied = a.vec(a.motor.id(), a.axis < 3 ? "applied_force" : "applied_torque");
+  EXPECT_NEAR(applied[a.axis % 3], 0.3, 1e-6);
+  a.set_motor("max_force", 0.1);
+  a.set_motor(load, -0.3);
+  const double before = a.v();
+  a.ticks(30);
+  EXPECT_NEAR(a.v() - before, -0.1 / a.inertia() * 0.5, 1e-4);
+}
+
+void target_torque() {
+  for (const model::JointType type : {model::JointType::revolute, model::JointType::prismatic}) {
+    OwnAxis o(type);
+    o.set(o.motor.id(), "mode", {4});
+    o.set(o.motor.id(), "target_torque", {0.02});
+    EXPECT_EQ(o.number(o.motor.id(), "target_torque"), 0.02);
+    EXPECT_EQ(o.number(o.motor.id(), "mode"), 4);
+    o.ticks(60);
+    const double inertia = type == model::JointType::revolute ? box_inertia(1, {0.2, 0.3, 0.4}).z : 1;
+    EXPECT_NEAR(o.v(), 0.02 / inertia, 1e-4);
+    o.set(o.motor.id(), "mode", {2});
+    EXPECT_EQ(o.number(o.motor.id(), "mode"), 2);
+  }
+}
+
+// With the torque max·(1 - w/w0) the speed approaches w0 as 1 - exp(-t·max/(I·w0)), with a spin and with a torque.
+void no_load_speed() {
+  for (const double mode : {1.0, 4.0}) {
+    OwnAxis o(model::JointType::revolute);
+    o.set(o.world.id(), "substeps", {40});
+    const double inertia = box_inertia(1, {0.2, 0.3, 0.4}).z;
+    const double w0 = 5;
+    const double max = inertia * w0 / 0.4;  // time constant 0.4 s
+    o.set(o.motor.id(), "mode", {mode});
+    o.set(o.motor.id(), "speed", {100});
+    o.set(o.motor.id(), "target_torque", {1000});
+    o.set(o.motor.id(), "max_angular_force", {0, 0, max});
+    o.set(o.motor.id(), "no_load_speed", {w0});
+    for (const double t : {0.5, 1.0}) {
+      o.ticks(30);
+      EXPECT_NEAR(o.v(), w0 * (1 - std::exp(-t / 0.4)), 2e-3 * w0) << mode << " " << t;
+    }
+  }
+}
+
 }  // namespace
 
 void add_motor_effects(PropertyEffects& effects) {
@@ -273,11 +326,15 @@ void add_motor_effects(PropertyEffects& effects) {
     add(side + "spring_rest_length", spring_rest);
     add(side + "spring_stiffness", spring_stiffness);
     add(side + "spring_damping", spring_damping);
+    add(linear ? "linear_force" : "angular_torque", given_load);
+    add(linear ? "linear_force_active" : "angular_torque_active", given_load);
   }
   effects[{"Motor", "mode"}] = mode;
   effects[{"Motor", "target"}] = target;
   effects[{"Motor", "speed"}] = speed;
   effects[{"Motor", "bounce"}] = bounce;
+  effects[{"Motor", "target_torque"}] = target_torque;
+  effects[{"Motor", "no_load_speed"}] = no_load_speed;
   effects[{"Motor", "damping"}] = damping;
   effects[{"Motor", "target_smoothing"}] = target_smoothing;
 }

@@ -302,7 +302,7 @@ TEST(StaticParts, ReportAVelocity) {
   s.ticks(1);
   const std::vector<std::string> lines = lines_since(seen);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_NE(lines[0].find("static (mass 0), so a velocity has no effect"), std::string::npos) << lines[0];
+  EXPECT_NE(lines[0].find("is a plane and can't move, so a velocity has no effect"), std::string::npos) << lines[0];
   EXPECT_EQ(floor.linear_velocity(), Vec3(0));
 }
 

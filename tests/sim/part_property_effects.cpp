@@ -161,7 +161,7 @@ void report_contacts() {
     std::size_t events = 0;
     for (int i = 0; i < 60; i++) {
       s.ticks(1);
-      events += s.world.contacts().events().size();
+      events += s.world.sensing().contacts().events().size();
     }
     EXPECT_EQ(events, on ? 1u : 0u);
   }
@@ -267,10 +267,67 @@ void collision_mask() {
   EXPECT_NEAR(ball.pose().position.z, rest - 10.0 / 240 / 240 * 24 * 25 / 2, 1e-5);
 }
 
+// Static: it stays. Kinematic: it moves at the velocity that is set, whatever pushes it. Dynamic: it falls.
+void motion() {
+  WorldFixture s;
+  s.gravity({0, 0, -kG});
+  Part& part = s.add_single_part(sphere_model(0.1), 1);
+  s.set(part.id(), "motion", {2});
+  s.ticks(30);
+  EXPECT_EQ(part.pose().position.z, 0);
+  s.set(part.id(), "motion", {1});
+  s.set(part.id(), "linear_velocity", {0, 0, 2});
+  part.apply_force({0, 0, 1000});
+  s.ticks(30);
+  EXPECT_NEAR(part.pose().position.z, 1, 1e-5);
+  s.set(part.id(), "motion", {0});
+  s.ticks(60);
+  EXPECT_NEAR(part.linear_velocity().z, 2 - kG, 1e-4);
+}
+
+// Friction accelerates a box on a belt until it has the belt's velocity.
+void surface_velocity() {
+  WorldFixture s;
+  s.gravity({0, 0, -kG});
+  Part& belt = s.add_single_part(box_model({20, 20, 0.2}), 0, {{0, 0, -0.1}, quat_identity()});
+  Part& box = s.add_single_part(box_model({0.4, 0.4, 0.1}), 1, {{0, 0, 0.05}, quat_identity()});
+  for (const Vec3 v : {Vec3(0.5, 0, 0), Vec3(0, -0.3, 0), Vec3(0)}) {
+    s.set(belt.id(), "surface_velocity", {v.x, v.y, v.z});
+    s.ticks(120);
+    EXPECT_NEAR(glm::length(box.linear_velocity() - v), 0, 1e-3);
+  }
+}
+
+// A property of the picture alone: two equal scenes move alike, whatever its value.
+void check_no_motion(const char* property, const std::vector<double>& value) {
+  WorldFixture plain, changed;
+  std::array<Part*, 2> balls{};
+  for (std::size_t i = 0; i < 2; i++) {
+    WorldFixture& s = i == 0 ? plain : changed;
+    s.gravity({0, 0, -10});
+    s.floor();
+    balls[i] = &s.add_single_part(sphere_model(0.1), 1, {{0, 0, 0.5}, quat_identity()});
+    balls[i]->set_velocity({1, 0, 0}, {0, 2, 0});
+  }
+  changed.set(balls[1]->id(), property, value);
+  plain.ticks(60);
+  changed.ticks(60);
+  EXPECT_EQ(balls[0]->pose().position, balls[1]->pose().position);
+  EXPECT_EQ(balls[0]->pose().rotation, balls[1]->pose().rotation);
+  const double* const read = changed.store.values(balls[1]->id(), Part::table().at(property));
+  for (std::size_t i = 0; i < value.size(); i++) EXPECT_EQ(read[i], value[i]);
+}
+
+// their effect on the picture is measured in tests/render
+void tint() { check_no_motion("tint", {0.25, 0.5, 0.75}); }
+void transparency() { check_no_motion("transparency", {0.5}); }
+
 }  // namespace
 
 void add_part_effects(PropertyEffects& effects) {
   effects[{"Part", "mass"}] = mass;
+  effects[{"Part", "motion"}] = motion;
+  effects[{"Part", "surface_velocity"}] = surface_velocity;
   effects[{"Part", "linear_damping"}] = linear_damping;
   effects[{"Part", "angular_damping"}] = angular_damping;
   effects[{"Part", "friction"}] = friction;
@@ -283,6 +340,8 @@ void add_part_effects(PropertyEffects& effects) {
   effects[{"Part", "collision_group"}] = collision_group;
   effects[{"Part", "collision_mask"}] = collision_mask;
   effects[{"Part", "report_contacts"}] = report_contacts;
+  effects[{"Part", "tint"}] = tint;
+  effects[{"Part", "transparency"}] = transparency;
   effects[{"Part", "position"}] = position;
   effects[{"Part", "rotation"}] = rotation;
   effects[{"Part", "linear_velocity"}] = linear_velocity;

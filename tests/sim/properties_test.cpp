@@ -19,10 +19,12 @@ struct NamedTable {
   const PropertyTable* table;
 };
 
-std::array<NamedTable, 6> tables() {
+std::array<NamedTable, 10> tables() {
   return {NamedTable{"World", &World::table()}, NamedTable{"Body", &Body::table()},
           NamedTable{"Part", &Part::table()},   NamedTable{"Joint", &Joint::table()},
-          NamedTable{"Motor", &Motor::table()}, NamedTable{"Gear", &Gear::table()}};
+          NamedTable{"Motor", &Motor::table()}, NamedTable{"Gear", &Gear::table()},
+          NamedTable{"Imu", &imu_table()},      NamedTable{"RangeFinder", &range_finder_table()},
+          NamedTable{"Zone", &zone_table()},    NamedTable{"Touch", &touch_table()}};
 }
 
 TEST(Properties, HaveMeasuredEffects) {
@@ -77,6 +79,8 @@ struct AllClasses : WorldFixture {
              string.id(),
              robot.add_motor(string).value()->id(),
              world.gears().add("gear", hinge, side, 2).value()->id()};
+    for (const SensorKind kind : kSensorKinds)
+      nodes.push_back(robot.sensors().add(Sensor::kind_name(kind), kind, kite).value()->id());
     world.flush();
   }
   std::vector<NodeId> nodes;

@@ -216,6 +216,34 @@ void body_enabled() {
 }
 
 // A body that must not sleep is stepped even if it is at rest.
+void body_motion() {
+  WorldFixture s;
+  s.gravity({0, 0, -10});
+  Body& body = s.body("pair");
+  for (const double x : {0.0, 1.0}) s.part(body, sphere_model(0.1), 1, {{x, 0, 0}, quat_identity()});
+  s.set(body.id(), "motion", {1});
+  s.set(body.id(), "linear_velocity", {0, 1, 0});
+  s.ticks(60);
+  for (const auto& part : body.parts()) {
+    EXPECT_NEAR(part->pose().position.y, 1, 1e-5);
+    EXPECT_EQ(part->pose().position.z, 0);
+  }
+  s.set(body.id(), "motion", {0});
+  s.ticks(60);
+  for (const auto& part : body.parts()) EXPECT_NEAR(part->linear_velocity().z, -10, 1e-4);
+}
+
+void body_gravity_factor() {
+  for (const double factor : {0.0, 0.5, -1.0}) {
+    WorldFixture s;
+    s.gravity({0, 0, -10});
+    Part& ball = s.add_single_part(sphere_model(0.1), 2);
+    s.set(ball.body().id(), "gravity_factor", {factor});
+    s.ticks(60);
+    EXPECT_NEAR(ball.linear_velocity().z, -10 * factor, 1e-4);
+  }
+}
+
 void body_can_sleep() {
   for (const bool can_sleep : {true, false}) {
     WorldFixture s;
@@ -273,6 +301,8 @@ void add_body_effects(PropertyEffects& effects) {
   effects[{"Body", "rotation"}] = body_rotation;
   effects[{"Body", "linear_velocity"}] = body_linear_velocity;
   effects[{"Body", "angular_velocity"}] = body_angular_velocity;
+  effects[{"Body", "motion"}] = body_motion;
+  effects[{"Body", "gravity_factor"}] = body_gravity_factor;
   effects[{"Body", "enabled"}] = body_enabled;
   effects[{"Body", "self_collision"}] = body_self_collision;
   effects[{"Body", "can_sleep"}] = body_can_sleep;

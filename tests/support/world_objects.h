@@ -3,6 +3,7 @@
 
 #include "sim/behavior/behavior_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
 #include "sim/state/rebuild.h"

@@ -82,7 +82,7 @@ std::string file_extension(const OptionInfo& option) {
     if (const std::size_t dot = word.rfind('.'); dot != std::string_view::npos && is_plain_word(word.substr(dot + 1)))
       extensions.append(extensions.empty() ? "" : "|").append(word.substr(dot + 1));
     if (word == "TAKE") return "take";
-    if (word == "DIR") return "/";
+    if (word == "DIR" && extensions.empty()) return "/";
     if (word == "FILE") return "*";
   }
   return extensions;

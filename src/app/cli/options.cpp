@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/command_info.h"
+#include "app/cli/inspect_options.h"
 #include "app/cli/play_options.h"
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
@@ -39,6 +40,7 @@ constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua and controlled over OSC.\n\n"
     "  limber                                       play scripts/arms.lua\n"
     "  limber my.lua --osc-in 0.0.0.0:9003          another scene, OSC open to the whole network\n"
+    "  limber robot.urdf                            look at a robot: URDF, MJCF (.xml), or a folder with one\n"
     "  oscsend 127.0.0.1 9003 /physics/sim/gravity f -1.6\n"
     "  limber my.lua --fast --duration 10 --hash    ten simulated seconds at full speed, print the hash\n"
     "  limber console -e sim.time                   evaluate Lua in the running program\n"
@@ -64,12 +66,13 @@ std::vector<std::string> with_command(int argc, char** argv) {
   return args;
 }
 
-// suggests a command for a word that is not a scene but similar to a command
+// suggests a command for a word that is no scene, model or folder, but similar to a command
 std::optional<std::string> mistyped_command(int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return {};
   const std::string_view word = argv[1];
   std::vector<std::string> searched;
-  if (word.ends_with(".lua") || word.find('/') != std::string_view::npos || !find_scene(word, searched).empty())
+  if (word.ends_with(".lua") || word.find('/') != std::string_view::npos ||
+      !find_file_or_folder(word, searched).empty())
     return {};
   const std::string_view near = nearest_name(word, kCommands);
   if (near.empty() || near == word) return {};
@@ -97,25 +100,6 @@ struct CommandLine {
   bool json = false;
   bool markdown = false;
 };
-
-void add_inspect(CLI::App& app, CommandLine& line) {
-  CLI::App* inspect = app.add_subcommand(
-      "inspect", "Check a URDF or MJCF file: links, joints, and every problem with its line and fix.");
-  inspect->footer(
-      "  limber inspect urdf/arm6.urdf                a table of the arm, and its problems\n"
-      "  limber inspect robot.urdf --json             the same for programs");
-  inspect->add_option("file", line.inspect.file, "The robot: URDF, or MJCF (.xml).")
-      ->type_name("FILE.urdf|FILE.xml")
-      ->required();
-  inspect->add_flag("--json", line.inspect.json, "Print JSON.");
-  inspect->add_option("--package-path", line.inspect.package_paths, "Folder for package:// paths; may be repeated.")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  inspect
-      ->add_option("--root", line.inspect.root,
-                   "MJCF: the top-level body to show, or world; default: the first that moves.")
-      ->type_name("BODY");
-}
 
 void add_describe(CLI::App& app, CommandLine& line) {
   CLI::App* describe =
@@ -385,7 +369,7 @@ void add_commands(CLI::App& app, CommandLine& line) {
   app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
   app.require_subcommand(1);
   add_play_options(*app.add_subcommand("play", "Play a scene (the default command)."), line.play);
-  add_inspect(app, line);
+  add_inspect(app, line.inspect);
   add_describe(app, line);
   add_bench(app, line);
   add_console(app, line.console);

@@ -28,6 +28,9 @@ constexpr const char* kPlayExamples =
     "  limber my.lua --fullscreen --monitor 2       a show on the second monitor\n"
     "  limber my.lua --headless --osc-in 0.0.0.0:9003  without a window, open to the network\n"
     "  limber my.lua --set /physics/sim/gravity=0,0,-1.6\n"
+    "  limber robot.urdf                            look at a robot, in a window with the panel\n"
+    "  limber robot.urdf --screenshot robot.png     an image of it\n"
+    "  limber robot.urdf --save-scene robot.lua     a scene with the robot, to start from\n"
     "  limber my.lua --screenshot still.png --at 3  an image\n"
     "  limber my.lua --render film.mp4 --duration 10  a film\n"
     "  limber my.lua --record evening.take          record all input\n"
@@ -94,7 +97,11 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   CLI::App* const play = &command;
   play->footer(kPlayExamples);
   CLI::Option* scene =
-      play->add_option("scene", o.scene, "File of the scene; default scripts/arms.lua.")->type_name("SCENE.lua");
+      play->add_option(
+              "scene", o.scene,
+              "A scene, a URDF or MJCF model, or a folder with one model; default scripts/arms.lua. A model is "
+              "put on a floor; its motors hold their positions.")
+          ->type_name("SCENE.lua|MODEL.urdf|MODEL.xml|DIR");
   add_display_options(*play, o.display);
   CLI::Option* fast =
       play->add_flag("--fast", o.fast, "Run at full speed instead of real time; no OSC and OSCQuery unless requested.");
@@ -122,6 +129,14 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   play->add_option("--package-path", o.package_paths, "Folder for package:// paths in URDF files; may be repeated.")
       ->type_name("DIR")
       ->allow_extra_args(false);
+  play->add_option("--root", o.root,
+                   "With an MJCF model: the top-level body to play, or world; default: the first that moves.")
+      ->type_name("BODY");
+  CLI::Option* save_scene =
+      play->add_option("--save-scene", o.save_scene,
+                       "Write the scene of the model to this file, with comments to start from, and exit.")
+          ->type_name("FILE.lua");
+  play->add_flag("--overwrite", o.overwrite, "With --save-scene: replace an existing file.")->needs(save_scene);
   play->add_flag("--watch", o.watch,
                  "With --fast: reload the scene when one of its files is saved, as is done in real time.");
   CLI::Option* record =
@@ -133,6 +148,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
           ->type_name("TAKE")
           ->excludes(record)
           ->excludes(scene)
+          ->excludes(save_scene)
           ->excludes(seed)
           ->excludes(sets)
           ->excludes(preset);

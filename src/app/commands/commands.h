@@ -81,10 +81,12 @@ struct InspectCommand {
   std::string file;
   bool json = false;
   std::vector<std::string> package_paths;
-  std::string root;  ///< See ImportOptions.
+  std::string root;             ///< See ImportOptions.
+  std::string screenshot = {};  ///< File of an image of the model; empty: none.
+  std::string size = {};        ///< Its size, as in `play`.
 };
 /// `limber inspect`: prints links, joints and problems of a URDF or MJCF file to stdout; if the file contains no body,
-/// an error to stderr. Returns 0 if there is a body, even with problems, else 1.
+/// an error to stderr. Returns 0 if there is a body, even with problems, else 1; 3 if the image can't be rendered.
 int inspect_command(const InspectCommand& command);
 /// Return the same as text: indented JSON, or a table for people.
 std::string inspect_json(const model::BodyModel& model);

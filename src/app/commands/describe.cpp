@@ -11,11 +11,13 @@
 #include "app/commands/commands.h"
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/viewer/played_file.h"
 #include "base/log/output.h"
 #include "base/text.h"
 #include "engine/engine.h"
 #include "properties/property_text.h"
 #include "sim/gears/gear.h"
+#include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
@@ -67,8 +69,9 @@ constexpr const char* kHeader = "address\tlegacy address\tkind\ttype\tunit\trang
 }  // namespace
 
 std::vector<const PropertyTable*> described_classes() {
-  std::vector<const PropertyTable*> all = {&sim::World::table(), &sim::Body::table(),  &sim::Part::table(),
-                                           &sim::Joint::table(), &sim::Motor::table(), &sim::Gear::table()};
+  std::vector<const PropertyTable*> all = {
+      &sim::World::table(), &sim::Body::table(), &sim::Part::table(),        &sim::Joint::table(), &sim::Motor::table(),
+      &sim::Gear::table(),  &sim::imu_table(),   &sim::range_finder_table(), &sim::zone_table(),   &sim::touch_table()};
   const sim::BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);
@@ -103,12 +106,12 @@ void each_class(const AddProperty& add) {
 
 // calls `add` for each property of all objects of a scene
 Result<void> each_object(const std::string& scene, const AddProperty& add) {
-  std::vector<std::string> searched;
+  const Result<PlayedFile> played = find_played(scene);
+  if (!played) return Error{played.error()};
   engine::EngineOptions options;
-  options.scene = find_scene(scene, searched);
+  options.scene = played->scene;
   options.scene_options.data_dir = data_dir();
   options.print = false;  // stdout is reserved for the result
-  if (options.scene.empty()) return Error{scene_not_found(scene, searched)};
   engine::EngineLink link;
   engine::Engine engine(link, options);
   if (Result<void> started = engine.start(); !started) return started;

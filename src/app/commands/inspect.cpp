@@ -4,12 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/exit_code.h"
+#include "app/show/play.h"
+#include "app/viewer/model_file.h"
 #include "base/log/output.h"
 #include "base/plural.h"
 #include "base/text.h"
@@ -86,6 +92,8 @@ const char* kind_name(model::ShapeKind kind) {
       return "hull";
     case model::ShapeKind::compound:
       return "compound";
+    case model::ShapeKind::ellipsoid:
+      return "ellipsoid";
   }
   return "";
 }
@@ -126,6 +134,15 @@ void add_mimics(const model::BodyModel& model, std::string& out) {
   }
 }
 
+void add_loops(const model::BodyModel& model, std::string& out) {
+  if (!model.loops.empty()) out += "\nloops\n";
+  for (const model::JointModel& loop : model.loops) {
+    out += fmt::format("  {}: {}, {} -> {}\n", printable(loop.name), model::joint_type_name(loop.type),
+                       printable(model.links[static_cast<std::size_t>(loop.parent)].name),
+                       printable(model.links[static_cast<std::size_t>(loop.child)].name));
+  }
+}
+
 void add_body(const model::BodyModel& model, std::string& out) {
   out += "\nresulting body (mass 0: fixed to the world)\n";
   for (const model::LinkModel& link : model.links) {
@@ -143,6 +160,56 @@ void add_body(const model::BodyModel& model, std::string& out) {
     out += fmt::format("  {}: {} {}\n", printable(m.name), m.site ? "site of" : "merged into",
                        printable(model.links[static_cast<std::size_t>(m.link)].name));
   }
+}
+
+// A color of visuals, with the links that have it.
+struct UsedColor {
+  Vec3 color{0};
+  double alpha = 1;
+  std::vector<std::string> links;
+};
+
+std::vector<UsedColor> used_colors(const model::BodyModel& model) {
+  std::vector<UsedColor> colors;
+  for (const model::LinkModel& link : model.links) {
+    for (const model::PlacedShape& visual : link.visuals) {
+      if (!visual.color) continue;
+      const auto same = [&](const UsedColor& c) { return c.color == *visual.color && c.alpha == visual.alpha; };
+      auto found = std::ranges::find_if(colors, same);
+      if (found == colors.end()) found = colors.insert(colors.end(), {*visual.color, visual.alpha, {}});
+      if (found->links.empty() || found->links.back() != link.name) found->links.push_back(link.name);
+    }
+  }
+  return colors;
+}
+
+void add_colors(const model::BodyModel& model, std::string& out) {
+  const std::vector<UsedColor> colors = used_colors(model);
+  if (!colors.empty()) out += "\ncolors of visuals (red green blue alpha)\n";
+  for (const UsedColor& c : colors) {
+    out += fmt::format("  {:.3g} {:.3g} {:.3g} {:.3g}: {}\n", c.color.x, c.color.y, c.color.z, c.alpha,
+                       printable(fmt::format("{}", fmt::join(c.links, ", "))));
+  }
+}
+
+// the links of the resulting body that touch nothing
+std::vector<std::string> links_without_collision(const model::BodyModel& model) {
+  std::vector<std::string> names;
+  for (const model::LinkModel& link : model.links) {
+    if (link.collisions.empty()) names.push_back(link.name);
+  }
+  return names;
+}
+
+void add_links_without_collision(const model::BodyModel& model, std::string& out) {
+  const std::vector<std::string> names = links_without_collision(model);
+  if (names.empty()) return;
+  out += fmt::format("\nlinks without collision shapes (they touch nothing)\n  {}\n",
+                     printable(fmt::format("{}", fmt::join(names, ", "))));
+}
+
+Json json_of(const UsedColor& c) {
+  return {{"color", Json::array({c.color.x, c.color.y, c.color.z, c.alpha})}, {"links", c.links}};
 }
 
 const std::string& link_name(const model::BodyModel& model, int link) {
@@ -164,12 +231,34 @@ void add_overlaps(const model::BodyModel& model, std::string& out) {
 
 }  // namespace
 
+namespace {
+
+// plays the model until its first image
+int render_model(const InspectCommand& command, const std::string& file) {
+  PlayOptions play;
+  play.scene = file;
+  play.package_paths = command.package_paths;
+  play.root = command.root;
+  play.display.screenshot = command.screenshot;
+  play.display.size = command.size;
+  return play_command(play);
+}
+
+}  // namespace
+
 std::string inspect_json(const model::BodyModel& model) {
   Json links = Json::array(), joints = Json::array(), problems = Json::array();
   for (const model::FileLink& link : model.file_links) links.push_back(json_of(link));
   for (const model::FileJoint& joint : model.file_joints) joints.push_back(json_of(joint));
   for (const model::Problem& p : model.problems) {
     problems.push_back({{"line", p.line}, {"severity", severity_name(p.severity)}, {"text", p.text}, {"cure", p.fix}});
+  }
+  Json loops = Json::array();
+  for (const model::JointModel& loop : model.loops) {
+    loops.push_back({{"name", loop.name},
+                     {"type", model::joint_type_name(loop.type)},
+                     {"parent", link_name(model, loop.parent)},
+                     {"child", link_name(model, loop.child)}});
   }
   Json pairs = Json::array(), no_self_collision = Json::array();
   for (const model::Overlap& overlap : model.overlaps) {
@@ -180,11 +269,16 @@ std::string inspect_json(const model::BodyModel& model) {
   for (const model::LinkModel& link : model.links) {
     if (!link.self_collision) no_self_collision.push_back(link.name);
   }
+  Json materials = Json::array();
+  for (const UsedColor& color : used_colors(model)) materials.push_back(json_of(color));
   const Json all{{"robot", model.name},
                  {"links", links},
                  {"joints", joints},
+                 {"loops", loops},
                  {"excluded_pairs", pairs},
                  {"no_self_collision", no_self_collision},
+                 {"no_collision", links_without_collision(model)},
+                 {"materials", materials},
                  {"problems", problems}};
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
@@ -198,7 +292,10 @@ std::string inspect_table(const model::BodyModel& model) {
   add_links(model, out);
   if (!model.file_joints.empty()) add_joints(model, out);
   add_mimics(model, out);
+  add_loops(model, out);
   add_body(model, out);
+  add_colors(model, out);
+  add_links_without_collision(model, out);
   add_overlaps(model, out);
   out += model.problems.empty() ? "\nno problems\n" : "\n";
   for (const model::Problem& p : model.problems) {
@@ -211,14 +308,19 @@ int inspect_command(const InspectCommand& command) {
   model::ImportOptions options;
   options.package_paths = command.package_paths;
   options.root = command.root;
-  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_model(command.file, options);
+  std::error_code error;
+  // only a folder is searched: the errors of a file are those of its reader
+  const bool folder = std::filesystem::is_directory(command.file, error);
+  const Result<std::string> file = folder ? find_model(command.file) : Result<std::string>(command.file);
+  if (!file) return fail(kInputError, file.error());
+  const Result<std::shared_ptr<const model::BodyModel>> model = model::import_model(*file, options);
   if (!model) {
     write_line(OutputTo::error, model.error());
     return kInputError;
   }
   const std::string text = command.json ? inspect_json(**model) : inspect_table(**model);
   write_result(text);
-  return kSuccess;
+  return command.screenshot.empty() ? kSuccess : render_model(command, *file);
 }
 
 }  // namespace limber::app

@@ -9,6 +9,7 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/viewer/played_file.h"
 #include "base/log/output.h"
 #include "base/plural.h"
 #include "base/system/file.h"
@@ -43,9 +44,9 @@ int preset_command(const PresetCommand& command) {
                                          printable(command.file), text.error()));
   const Result<engine::ParsedPresets> imported = engine::import_pattrstorage(*text);
   if (!imported) return fail(kInputError, fmt::format("{}: {}", command.file, imported.error()));
-  std::vector<std::string> searched;
-  const std::string scene = find_scene(command.scene, searched);
-  if (scene.empty()) return fail(kInputError, scene_not_found(command.scene, searched));
+  const Result<PlayedFile> played = find_played(command.scene);
+  if (!played) return fail(kInputError, played.error());
+  const std::string& scene = played->scene;
   const std::string state = state_dir();
   const std::string locks = state.empty() ? "" : state + "/locks";
   engine::PresetFile file(engine::PresetFile::path_for(scene),

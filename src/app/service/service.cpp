@@ -15,6 +15,7 @@
 #include "app/exit_code.h"
 #include "app/paths.h"
 #include "app/service/service_unit.h"
+#include "app/viewer/played_file.h"
 #include "base/log/output.h"
 #include "base/system/executable_path.h"
 #include "base/system/file.h"
@@ -74,6 +75,7 @@ Result<void> write_unit(const std::string& file, std::string_view text) {
 std::string conflicting_option(const PlayOptions& play) {
   if (play.fast) return "--fast is for batch runs; a service plays in real time";
   if (play.display.offline()) return "--render and --screenshot are for batch runs; a service plays in real time";
+  if (!play.save_scene.empty()) return "--save-scene writes a scene and ends; a service plays";
   return {};
 }
 
@@ -87,10 +89,12 @@ std::vector<std::string> words_of_service(const ServiceCommand& command) {
 int install(const ServiceCommand& command) {
   if (const std::string reason = conflicting_option(command.play); !reason.empty()) return fail(kUsageError, reason);
   if (service_folder().empty()) return fail(kMachineError, "HOME is not set: there is no folder for units");
-  std::vector<std::string> searched;
   const bool replays = !command.play.take.replay.empty();
   const std::string& scene = replays ? command.play.take.replay : command.play.scene;
-  if (!replays && find_scene(scene, searched).empty()) return fail(kInputError, scene_not_found(scene, searched));
+  if (!replays) {
+    if (const Result<PlayedFile> played = find_played(scene, command.play.package_paths, command.play.root); !played)
+      return fail(kInputError, played.error());
+  }
   const std::string name = command.name.empty() ? service_name(scene) : command.name;
   if (!is_valid_name(name))
     return fail(kUsageError, fmt::format("--name '{}': use only letters, digits, _ and -", printable(name)));

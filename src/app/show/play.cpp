@@ -18,6 +18,7 @@
 #include "app/show/shutdown_guard.h"
 #include "app/view/render.h"
 #include "app/view/window.h"
+#include "app/viewer/played_file.h"
 #include "base/build_info.h"
 #include "base/log/log.h"
 #include "base/log/log_file.h"
@@ -180,17 +181,18 @@ class PanicSignal {
 class Playing {
  public:
   Playing(const PlayOptions& options, engine::EngineOptions engine_options, const osc::OscOptions& osc,
-          const QueryAddresses& query_addresses)
+          const QueryAddresses& query_addresses, const std::optional<ModelScene>& model)
       : options_(options),
         osc_(osc),
         query_addresses_(query_addresses),
         scene_file_(engine_options.scene),
+        models_(model, options.package_paths),
         engine_(link_, with_notifier(std::move(engine_options))),
         network_(link_, osc, engine::transient_offsets()),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
         query_(link_, query_host(network_, osc.allow, options.network.query_names)) {
     if ((!options.fast || options.watch) && options.take.replay.empty())
-      scene_loader_.emplace(link_, engine_, scene_file_);
+      scene_loader_.emplace(link_, engine_, scene_file_, &models_);
   }
 
   /// Returns the exit code.
@@ -199,7 +201,7 @@ class Playing {
     {
       EngineThread engine_thread(engine_);
       DisplayWatchdog display_watchdog;
-      ShowLoop loop(engine_thread, engine_, link_, notifier_, display_watchdog, options_);
+      ShowLoop loop(engine_thread, engine_, link_, notifier_, display_watchdog, options_, models_);
       if (const std::optional<int> failed = start(engine_thread, loop)) return *failed;
       const auto end_without_window = [&](const char* reason) {
         log_error("{}", reason);
@@ -270,6 +272,7 @@ class Playing {
   const osc::OscOptions& osc_;
   const QueryAddresses& query_addresses_;
   const std::string scene_file_;
+  ShownModels models_;
   engine::EngineLink link_;
   const PanicSignal panic_signal_{link_};
   ServiceNotifier notifier_;
@@ -323,11 +326,39 @@ Result<void> open_output(const PlayOptions& options) {
   return {};
 }
 
+// writes the scene of the model
+int save_scene(const PlayOptions& options, const std::optional<ModelScene>& model) {
+  if (!model) return fail(kUsageError, "--save-scene writes the scene of a model; name a .urdf or .xml file");
+  if (const Result<void> saved = save_model_scene(*model, options.save_scene, options.overwrite); !saved)
+    return fail(kInputError, saved.error());
+  print_notice("written: {}", printable(options.save_scene));
+  print_notice("{} {}", program_command(), shell_word(options.save_scene));
+  return kSuccess;
+}
+
 Result<void> check_options(const PlayOptions& options) {
   if (Result<void> display = check_display_options(options.display, options.duration); !display) return display;
   if (options.recover && options.display.offline())
     return Error{"--recover can't be combined with --render and --screenshot; leave them out"};
   return {};
+}
+
+// finds the scene or model, then plays it, renders it or writes its scene
+int play_file(const PlayOptions& options, const osc::OscOptions& osc, const QueryAddresses& query) {
+  const Result<PlayedFile> played = options.take.replay.empty()
+                                        ? find_played(options.scene, options.package_paths, options.root)
+                                        : PlayedFile{options.scene, std::nullopt};
+  const std::string scene = played ? played->scene : std::string();
+  // absolute, because the current folder may be replaced while the show plays
+  std::error_code error;
+  const std::filesystem::path scene_path = std::filesystem::absolute(scene, error);
+  Result<engine::EngineOptions> engine_options =
+      parse_engine(options, error || scene.empty() ? scene : scene_path.string());
+  if (!engine_options) return fail(kUsageError, engine_options.error());
+  if (!played) return fail(kInputError, played.error());
+  if (!options.save_scene.empty()) return save_scene(options, played->model);
+  if (options.display.offline()) return render_scene(options, std::move(*engine_options));
+  return std::make_unique<Playing>(options, std::move(*engine_options), osc, query, played->model)->play();
 }
 
 }  // namespace
@@ -348,17 +379,7 @@ int play_command(const PlayOptions& options) {
   Result<QueryAddresses> query = parse_query(options.network.query);
   if (!query) return fail(kUsageError, query.error());
   if (options.fast && !*query) query->emplace();  // no port either
-  std::vector<std::string> searched;
-  const std::string scene = replays ? options.scene : find_scene(options.scene, searched);
-  // absolute, because the current folder may be replaced while the show plays
-  std::error_code error;
-  const std::filesystem::path scene_path = std::filesystem::absolute(scene, error);
-  Result<engine::EngineOptions> engine_options =
-      parse_engine(options, error || scene.empty() ? scene : scene_path.string());
-  if (!engine_options) return fail(kUsageError, engine_options.error());
-  if (scene.empty()) return fail(kInputError, scene_not_found(options.scene, searched));
-  if (options.display.offline()) return render_scene(options, std::move(*engine_options));
-  return std::make_unique<Playing>(options, std::move(*engine_options), *osc, *query)->play();
+  return play_file(options, *osc, *query);
 }
 
 }  // namespace limber::app

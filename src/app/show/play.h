@@ -1,4 +1,5 @@
-// `limber play`: plays a scene with OSC, a window or a status line once a second, until it ends or is stopped.
+// `limber play`: plays a scene or a model with OSC, a window or a status line once a second, until it ends or is
+// stopped.
 #pragma once
 
 #include <cstdint>
@@ -49,14 +50,18 @@ struct PlayOptions {
   std::vector<std::string> sets;  ///< PATH=VALUE
   std::string preset;             ///< Recalled after the scene has run, before `sets`.
   std::vector<std::string> package_paths;
-  bool recover = false;  ///< Start with the values that a crashed run has left.
+  std::string root;        ///< MJCF: see ImportOptions.
+  std::string save_scene;  ///< File of the scene to write for a model; empty: play.
+  bool overwrite = false;  ///< Replace that file if it exists.
+  bool recover = false;    ///< Start with the values that a crashed run has left.
   NetworkOptions network;
   TakeOptions take;
   LogOptions log;
   DisplayOptions display;
 };
 
-/// Plays. Returns the exit code: 0 success, 1 invalid input, 2 usage, 3 the machine. [main]
+/// Plays, or writes the scene of a model. Returns the exit code: 0 success, 1 invalid input, 2 usage, 3 the machine.
+/// [main]
 int play_command(const PlayOptions& options);
 
 }  // namespace limber::app

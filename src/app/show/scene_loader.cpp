@@ -12,10 +12,12 @@
 
 #include <fmt/format.h>
 
+#include "app/viewer/model_file.h"
 #include "base/log/log.h"
 #include "base/system/thread.h"
 #include "base/system/wait.h"
 #include "base/text.h"
+#include "model/import.h"
 #include "script/scene/script_files.h"
 
 namespace limber::app {
@@ -24,6 +26,8 @@ namespace {
 
 constexpr std::size_t kMaxScenes = 1000;                        // limit of the list
 constexpr std::chrono::milliseconds kReloadRetryInterval{250};  // interval of retries while a take delays a reload
+// address of requests to add a model; not a valid OSC address, so that only this program makes them
+constexpr std::string_view kAddModel = "add model";
 
 std::string folder_of(const std::string& scene) {
   std::error_code error;
@@ -34,9 +38,10 @@ std::string folder_of(const std::string& scene) {
 }  // namespace
 
 SceneLoader::SceneLoader(engine::EngineLink& link, engine::Engine& engine, const std::string& scene,
-                         FileWatch::Mode mode)
+                         ShownModels* models, FileWatch::Mode mode)
     : link_(link),
       engine_(engine),
+      models_(models),
       folder_(folder_of(scene)),
       takes_folder_(script::ScriptFiles(scene, {}).show_folder() + "/takes"),
       mode_(mode) {
@@ -47,6 +52,7 @@ SceneLoader::SceneLoader(engine::EngineLink& link, engine::Engine& engine, const
     if (!requests_.push(request)) return reject(request, "too many requests for scenes at once");
     wake_.notify();
   };
+  if (models_ != nullptr) models_->set_receiver([this](const std::string& path) { add_model(path); });
   link_.on_rerun = [this] {
     rerun_.store(true);
     wake_.notify();
@@ -64,8 +70,44 @@ void SceneLoader::stop() {
   stop_.store(true);
   wake_.notify();
   if (thread_.joinable()) thread_.join();
+  if (models_ != nullptr) models_->set_receiver({});
   link_.on_rerun = nullptr;
   link_.on_scene_request = nullptr;
+}
+
+void SceneLoader::add_model(const std::string& path) {
+  const SceneRequest request{
+      {std::string(kAddModel), {Arg::of(std::string_view(path))}}, {CommandSource::panel, 0, 0, false}, 0};
+  if (!requests_.push(request)) return log_error("{}: too many models at once", printable(path));
+  wake_.notify();
+}
+
+// Returns true if the model is in the scene now.
+bool SceneLoader::handle_model(const SceneRequest& request) {
+  const std::string& path = request.message.args[0].text;
+  const std::string file_name = printable(std::filesystem::path(path).filename().string());
+  const auto fail = [&](const std::string& reason) {
+    log_error("{} was not added: {}", file_name, reason);
+    link_.push_out({engine::Outgoing::Destination::error, request.origin, engine::error_message(file_name, reason)});
+    return false;
+  };
+  Result<std::string> file = find_model(path);
+  if (!file) return fail(file.error());
+  std::error_code error;
+  if (const std::filesystem::path absolute = std::filesystem::absolute(*file, error); !error)
+    *file = absolute.lexically_normal().string();
+  model::ImportOptions options;
+  if (models_ != nullptr) options.package_paths = models_->package_paths();
+  const auto model = model::import_model(*file, options);
+  if (!model) return fail(model.error());
+  const Result<engine::AddedModel> added = engine_.add_model(*file, **model);
+  if (!added) return fail(added.error());
+  if (models_ != nullptr) models_->note_added(*added);
+  log_info("{} was added to the scene as the body {}", file_name, printable(added->name));
+  link_.push_out({engine::Outgoing::Destination::reply,
+                  request.origin,
+                  {"/transport/added", {Arg::of(std::string_view(added->name))}}});
+  return true;
 }
 
 // saved files have priority: requests never delay a reload
@@ -143,9 +185,10 @@ bool SceneLoader::play_take(const SceneRequest& request) {
   return true;
 }
 
-// returns true if another scene plays now
+// returns true if the files of the scene are others now
 bool SceneLoader::handle(const SceneRequest& request) {
   const std::vector<Arg>& args = request.message.args;
+  if (request.message.address == kAddModel) return handle_model(request);
   if (request.message.address.starts_with("/take/")) return play_take(request);
   const std::vector<std::string> names = scenes();
   if (args.empty()) {

@@ -1,5 +1,5 @@
-// SceneLoader: a thread that loads other scenes and takes on request, and reloads the scene when one of its files is
-// saved or a parameter with `rerun` has changed.
+// SceneLoader: a thread that loads other scenes, takes and models on request, and reloads the scene when one of its
+// files is saved or a parameter with `rerun` has changed.
 #pragma once
 
 #include <atomic>
@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/show/file_watch.h"
+#include "app/viewer/shown_models.h"
 #include "base/system/wake.h"
 #include "base/threads/bounded_queue.h"
 #include "engine/engine.h"
@@ -19,7 +20,9 @@ class SceneLoader {
  public:
   /// Must be created before the engine starts; `link` and `engine` must outlive it. `scene`: the file that plays; other
   /// scenes are loaded from its folder only.
-  SceneLoader(engine::EngineLink& link, engine::Engine& engine, const std::string& scene,
+  /// `models`, if not null, receives the models that are added, and passes dropped files to add_model(); it must
+  /// outlive the loader.
+  SceneLoader(engine::EngineLink& link, engine::Engine& engine, const std::string& scene, ShownModels* models = nullptr,
               FileWatch::Mode mode = FileWatch::Mode::events);
   ~SceneLoader() { stop(); }
   SceneLoader(const SceneLoader&) = delete;
@@ -27,6 +30,9 @@ class SceneLoader {
 
   /// Starts to watch the files of the scene, which must have run. [main]
   void start();
+  /// Adds a model, given by its file or a folder with one model, to the running scene. The thread reports the result to
+  /// the log and the panel. [any]
+  void add_model(const std::string& path);
   /// Stops the thread; called after the engine has ended. [main]
   void stop();
 
@@ -45,6 +51,7 @@ class SceneLoader {
   void run(FileWatch& files);
   bool handle(const SceneRequest& request);
   bool play_take(const SceneRequest& request);
+  bool handle_model(const SceneRequest& request);
   std::vector<std::string> scenes() const;
   std::vector<std::string> takes() const;
   void reject(const SceneRequest& request, const std::string& reason);
@@ -52,6 +59,7 @@ class SceneLoader {
 
   engine::EngineLink& link_;
   engine::Engine& engine_;
+  ShownModels* models_;
   std::string folder_;
   std::string takes_folder_;  // the folder of the show's takes
   FileWatch::Mode mode_;

@@ -36,13 +36,15 @@ constexpr std::chrono::milliseconds kStatusInterval = 1s;
 }  // namespace
 
 ShowLoop::ShowLoop(const EngineThread& engine_thread, engine::Engine& engine, engine::EngineLink& link,
-                   ServiceNotifier& notifier, DisplayWatchdog& display_watchdog, const PlayOptions& options)
+                   ServiceNotifier& notifier, DisplayWatchdog& display_watchdog, const PlayOptions& options,
+                   const ShownModels& models)
     : engine_thread_(engine_thread),
       engine_(engine),
       link_(link),
       notifier_(notifier),
       display_watchdog_(display_watchdog),
       options_(options),
+      models_(models),
       prints_status_(!options.log.quiet && !system::standard_error_is_journal()) {}
 
 void ShowLoop::wait_for_scene() {
@@ -77,8 +79,8 @@ bool ShowLoop::open_window() {
 }
 
 Result<void> ShowLoop::try_window() {
-  auto window =
-      display_watchdog_.call([&] { return WindowShow::open(options_.display, printable(options_.scene), link_); });
+  auto window = display_watchdog_.call(
+      [&] { return WindowShow::open(options_.display, printable(options_.scene), link_, models_); });
   if (!window) return Error{window.error()};
   window_ = std::move(*window);
   return {};

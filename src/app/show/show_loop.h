@@ -21,7 +21,8 @@ class ShowLoop {
  public:
   /// All arguments must outlive the loop.
   ShowLoop(const EngineThread& engine_thread, engine::Engine& engine, engine::EngineLink& link,
-           ServiceNotifier& notifier, DisplayWatchdog& display_watchdog, const PlayOptions& options);
+           ServiceNotifier& notifier, DisplayWatchdog& display_watchdog, const PlayOptions& options,
+           const ShownModels& models);
 
   /// Waits until the scene has run. A signal ends the program.
   void wait_for_scene();
@@ -54,6 +55,7 @@ class ShowLoop {
   ServiceNotifier& notifier_;
   DisplayWatchdog& display_watchdog_;
   const PlayOptions& options_;
+  const ShownModels& models_;
   const bool prints_status_;
   std::unique_ptr<WindowShow> window_;
   bool awaits_display_ = false;  // the window opens as soon as there is a display

@@ -49,7 +49,7 @@ std::vector<Message> CameraControl::follow(const engine::Snapshot& snapshot, std
 std::vector<Message> CameraControl::frame(const engine::CameraSettings& camera,
                                           std::span<const sim::FramedSphere> spheres, double aspect) {
   const render::Orbit orbit = orbit_of(camera);
-  const auto view = sim::frame(spheres, orbit.eye - orbit.target, {camera.fovy, aspect});
+  const auto view = sim::frame(spheres, orbit.eye - orbit.target, {camera.fovy, aspect, camera.near});
   if (!view) return {};
   return set_camera({view->eye, view->target});
 }

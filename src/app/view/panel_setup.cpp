@@ -8,6 +8,7 @@
 #include "app/console/history.h"
 #include "app/paths.h"
 #include "app/view/window.h"
+#include "app/viewer/shown_models.h"
 #include "sim/behavior/behavior_type.h"
 
 namespace limber::app {
@@ -38,13 +39,17 @@ render::FreeArea free_part(const panel::Gui& gui, int width, int height) {
   return {free.x / width, free.y / height, free.width / width, free.height / height};
 }
 
-panel::GuiOptions panel_options(Window* window, render::GlApi api) {
+panel::GuiOptions panel_options(Window* window, render::GlApi api, const ShownModels* models) {
   panel::GuiOptions options;
   options.glsl = render::gl_api_info(api).glsl;
   options.behavior_types = behavior_types();
   const auto history = std::make_shared<ConsoleHistory>(ConsoleHistory::default_file());
   options.history = history->lines();
   options.store_line = [history](const std::string& line) { history->add(line); };
+  if (models != nullptr && models->can_save()) {
+    options.scene_file = models->proposed_file();
+    options.save_scene = [models](const std::string& file, bool overwrite) { return models->save(file, overwrite); };
+  }
   if (window == nullptr) return options;
   options.copy = [window](const std::string& text) { window->set_clipboard(text); };
   options.paste = [window] { return window->clipboard(); };

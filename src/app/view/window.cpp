@@ -206,6 +206,7 @@ Window::Window(GLFWwindow* window, render::GlApi api) : window_(window), api_(ap
   glfwSetCursorPosCallback(window_, on_move);
   glfwSetScrollCallback(window_, on_scroll);
   glfwSetWindowFocusCallback(window_, on_focus);
+  glfwSetDropCallback(window_, on_drop);
   glfwGetCursorPos(window_, &x_, &y_);
 }
 
@@ -247,6 +248,11 @@ void Window::on_focus(GLFWwindow* window, int focused) {
   panel::InputEvent event{.kind = panel::InputEvent::Kind::focus};
   event.down = focused == GLFW_TRUE;
   window_of(window).events_.push_back(event);
+}
+
+void Window::on_drop(GLFWwindow* window, int count, const char** paths) {
+  std::vector<std::string>& dropped = window_of(window).dropped_;
+  dropped.insert(dropped.end(), paths, paths + count);
 }
 
 void Window::on_move(GLFWwindow* window, double x, double y) {
@@ -328,6 +334,7 @@ std::string Window::clipboard() const {
 void Window::set_clipboard(const std::string& text) { glfwSetClipboardString(window_, text.c_str()); }
 
 std::vector<panel::InputEvent> Window::consume_events() { return std::exchange(events_, {}); }
+std::vector<std::string> Window::consume_dropped() { return std::exchange(dropped_, {}); }
 MouseMovement Window::consume_mouse() { return std::exchange(mouse_, {}); }
 void Window::set_title(const std::string& text) { glfwSetWindowTitle(window_, text.c_str()); }
 

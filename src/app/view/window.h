@@ -60,8 +60,10 @@ class Window {
   /// Returns the input events since the last call, for the panel. [main]
   std::vector<panel::InputEvent> consume_events();
   /// True if there was input since the last consume_events(). [main]
-  bool has_events() const { return !events_.empty() || mouse_.any(); }
+  bool has_events() const { return !events_.empty() || mouse_.any() || !dropped_.empty(); }
   MouseMovement consume_mouse();
+  /// Returns the paths of files that were dropped on the window since the last call. [main]
+  std::vector<std::string> consume_dropped();
   /// Returns the labels of keys that are identified by their position. [main]
   panel::KeyLabels key_labels() const;
   std::string clipboard() const;
@@ -88,11 +90,13 @@ class Window {
   static void on_button(GLFWwindow* window, int button, int action, int mods);
   static void on_char(GLFWwindow* window, unsigned character);
   static void on_focus(GLFWwindow* window, int focused);
+  static void on_drop(GLFWwindow* window, int count, const char** paths);
 
   GLFWwindow* window_;
   render::GlApi api_;
   std::vector<panel::InputEvent> events_;
   MouseMovement mouse_;
+  std::vector<std::string> dropped_;
   double x_ = 0;
   double y_ = 0;
   int windowed_rect_[4] = {0, 0, 0, 0};  // position and size before full screen

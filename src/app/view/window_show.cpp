@@ -24,7 +24,7 @@ constexpr double kShaderCheckInterval = 0.25;  // s
 }  // namespace
 
 Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& options, const std::string& scene,
-                                                     engine::EngineLink& link) {
+                                                     engine::EngineLink& link, const ShownModels& models) {
   // software renderers create their worker threads from this thread, and use every core
   system::lower_thread_priority();
   Result<ImageSize> size = image_size(options);
@@ -47,12 +47,12 @@ Result<std::unique_ptr<WindowShow>> WindowShow::open(const DisplayOptions& optio
     print_notice("using --quality low because of {}; --quality high looks better",
                  software ? "software rendering" : api.name);
   return std::unique_ptr<WindowShow>(
-      new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link));
+      new WindowShow(std::move(*window), std::move(*renderer), options, settings, scene, link, models));
 }
 
 WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<render::Renderer> renderer,
                        const DisplayOptions& options, const panel::GuiSettings& settings, std::string scene,
-                       engine::EngineLink& link)
+                       engine::EngineLink& link, const ShownModels& models)
     : window_(std::move(window)),
       renderer_(std::move(renderer)),
       settings_file_(panel::settings_file()),
@@ -60,8 +60,9 @@ WindowShow::WindowShow(std::unique_ptr<Window> window, std::unique_ptr<render::R
       panel_scale_(options.panel_scale.value_or(1)),
       fixed_size_(!options.size.empty()),
       scene_(std::move(scene)),
-      link_(link) {
-  panel::GuiOptions panel = panel_options(window_.get(), window_->api());
+      link_(link),
+      models_(models) {
+  panel::GuiOptions panel = panel_options(window_.get(), window_->api(), &models_);
   panel.settings = settings;
   if (!options.monitor.empty()) panel.settings.monitor = options.monitor;
   if (options.hide_pointer) panel.settings.hide_pointer = *options.hide_pointer;
@@ -129,6 +130,7 @@ void WindowShow::handle_input(int width, int height, double now) {
   }
   handle_mouse();
   follow_part();
+  for (const std::string& path : window_->consume_dropped()) models_.drop(path);
 }
 
 void WindowShow::act(panel::HotkeyAction action) {

@@ -12,6 +12,7 @@
 #include "app/view/snapshot_interpolation.h"
 #include "app/view/viewport_mouse.h"
 #include "app/view/window.h"
+#include "app/viewer/shown_models.h"
 #include "engine/output/engine_link.h"
 #include "ui/panel/gui.h"
 #include "ui/render/renderer.h"
@@ -24,7 +25,7 @@ class WindowShow {
   /// Must be called after all other threads were created: this thread lowers its priority, so that drawing never delays
   /// the simulation. The error says why there is no window. [main]
   static Result<std::unique_ptr<WindowShow>> open(const DisplayOptions& options, const std::string& scene,
-                                                  engine::EngineLink& link);
+                                                  engine::EngineLink& link, const ShownModels& models);
 
   /// Saves the panel's settings.
   ~WindowShow();
@@ -39,7 +40,8 @@ class WindowShow {
 
  private:
   WindowShow(std::unique_ptr<Window> window, std::unique_ptr<render::Renderer> renderer, const DisplayOptions& options,
-             const panel::GuiSettings& settings, std::string scene, engine::EngineLink& link);
+             const panel::GuiSettings& settings, std::string scene, engine::EngineLink& link,
+             const ShownModels& models);
 
   void update_snapshots(double now);
   void check_for_changes(double now);
@@ -66,6 +68,7 @@ class WindowShow {
   std::unique_ptr<panel::Gui> gui_;    // destroyed before its context
   std::string scene_;
   engine::EngineLink& link_;
+  const ShownModels& models_;
   SnapshotInterpolation snapshots_;
   FramePace pace_;
   ChangeDetector changes_;

@@ -43,6 +43,7 @@ constexpr SpecialAddress kSpecialAddresses[] = {
     {"/list/parts", "body", "Answers with the body and the names of its parts."},
     {"/list/joints", "body", "Answers with the body and the names of its joints, in stream order."},
     {"/list/motors", "body", "Answers with the body and the names of its motors."},
+    {"/list/sensors", "body", "Answers with the body and the names of its sensors."},
     {"/list/behaviors", "body", "Answers with the body and the names of its behaviors, in execution order."},
     {"/list/gears", "", "Answers with the names of the gears."},
     {"/list/groups", "", "Answers with the names of the group behaviors."},
@@ -89,6 +90,13 @@ std::string object_text(const Store& store, NodeId id) {
     return fmt::format("{} '{}/{}'", kind, store.name(owner), store.name(id));
   return &store.table(id) == &sim::Body::table() || kind == "group" ? fmt::format("{} '{}'", kind, store.name(id))
                                                                     : store.path(id);
+}
+
+// Why a part can't be pushed or pulled.
+std::string immovable_text(const Store& store, NodeId part) {
+  const bool kinematic = static_cast<const sim::Part*>(store.object(part))->motion() == sim::PartMotion::kinematic;
+  return fmt::format("{} is {}", object_text(store, part),
+                     kinematic ? "kinematic: no force moves it; set its position" : "static and never moves");
 }
 
 // True for the single argument 0, which a button sends when it is released and which triggers nothing.
@@ -341,7 +349,7 @@ Outcome MessageDispatcher::part_force(const Message& message) {
   if (const Result<void> selected = selector_.select(sim::Part::table(), property, names, refs_); !selected)
     return Outcome::rejected(selected.error());
   if (Selector::is_single(names, 2) && static_cast<sim::Part*>(store_.object(refs_.front().node))->is_static())
-    return Outcome::rejected(fmt::format("{} is static and never moves", object_text(store_, refs_.front().node)));
+    return Outcome::rejected(immovable_text(store_, refs_.front().node));
   for (const PropertyRef& ref : refs_) {
     sim::Part& part = *static_cast<sim::Part*>(store_.object(ref.node));
     part.apply_force_at({numbers[0], numbers[1], numbers[2]}, part.center() + Vec3(numbers[3], numbers[4], numbers[5]));
@@ -367,8 +375,8 @@ Outcome MessageDispatcher::part_hold(const Message& message) {
       !selected)
     return Outcome::rejected(selected.error());
   const NodeId id = refs_.front().node;
-  if (static_cast<sim::Part*>(store_.object(id))->is_static())
-    return Outcome::rejected(fmt::format("{} is static and never moves", object_text(store_, id)));
+  if (static_cast<sim::Part*>(store_.object(id))->motion() == sim::PartMotion::fixed)
+    return Outcome::rejected(immovable_text(store_, id));
   if (!mouse_springs_.attach(world_, id, {numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}))
     return Outcome::rejected(fmt::format("the maximum of {} springs is reached", MouseSprings::kMaxSprings));
   return {};

@@ -32,6 +32,12 @@ void MouseSprings::apply_forces(sim::World& world) {
     for (const auto& other : part.body().parts()) mass += other->is_static() ? 0 : other->mass();
     const Pose pose = part.pose();
     const Vec3 at = pose.position + pose.rotation * spring.point;
+    if (part.is_static()) {
+      // a kinematic part follows the mouse
+      if (part.motion() == sim::PartMotion::kinematic)
+        part.set_pose({pose.position + (spring.target - at), pose.rotation});
+      continue;
+    }
     const Vec3 velocity = part.linear_velocity() + glm::cross(part.angular_velocity(), at - part.center());
     // sized for the mass of the whole body, but limited for the part, so that explicit integration stays stable
     const double dt = world.timestep();

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "base/color.h"
 #include "engine/output/snapshot.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/visuals/visuals.h"
@@ -79,6 +80,9 @@ class RenderShapeCollector {
   std::unordered_map<const model::BodyModel*, std::vector<std::vector<PlacedRenderShape>>> of_model_;
 };
 
+// `tint` and `transparency` of a part, which are neighbors in its block
+constexpr std::uint32_t kTintWidth = 4;
+
 // offset of a property in its object's block
 std::uint32_t at(const PropertyTable& table, std::string_view property) { return table.at(property).offset; }
 
@@ -93,14 +97,21 @@ RenderScene::RenderScene(const sim::World& world) {
              block(world.visuals().appearance().id())};
   for (const auto& shape : world.shapes().list()) blocks_.push_back(block(shape->id()));
 
+  std::uint32_t tint = 0;
+  for (const Block& each : blocks_) tint += each.width;
+  const std::uint32_t tint_offset = sim::Part::table().at("tint").offset;
   RenderShapeCollector collector(world, shapes);
   const std::uint32_t enabled = sim::Body::table().at("enabled").offset;
   for (const auto& body : world.bodies()) {
     const std::uint32_t enabled_offset = view.slots[body->id().slot].transient + enabled;
     for (std::size_t i = 0; i < body->parts().size(); i++) {
       const sim::Part& part = *body->parts()[i];
-      for (const PlacedRenderShape& placed : collector.shapes_of(part, i))
-        instances.push_back({view.slots[part.id().slot].transient, enabled_offset, placed.shape, placed.origin});
+      const std::vector<PlacedRenderShape>& of_part = collector.shapes_of(part, i);
+      if (of_part.empty()) continue;
+      for (const PlacedRenderShape& placed : of_part)
+        instances.push_back({view.slots[part.id().slot].transient, enabled_offset, placed.shape, placed.origin, tint});
+      blocks_.push_back({view.slots[part.id().slot].persistent + tint_offset, kTintWidth});
+      tint += kTintWidth;
     }
   }
 }
@@ -136,6 +147,13 @@ Material material_of(const Snapshot& snapshot, std::uint32_t material) {
           v[at(table, "specular_pow")],
           ambient_is_default ? diffuse : ambient,
           diffuse};
+}
+
+Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance) {
+  const double* const v = snapshot.visuals.data() + instance.tint;
+  const Vec3 hsb = vec3_at(v);
+  // the default is exactly white
+  return {hsb == Vec3(0, 0, 1) ? Vec3(1) : rgb_of(hsb), v[kTintWidth - 1]};
 }
 
 CameraSettings camera_of(const Snapshot& snapshot) {

@@ -28,7 +28,8 @@ struct RenderInstance {
   std::uint32_t part_offset = 0;     ///< Index of the part's block in Snapshot::transient.
   std::uint32_t enabled_offset = 0;  ///< Index of its body's `enabled` (1 or 0) in Snapshot::transient.
   std::uint32_t shape = 0;
-  Pose origin;  ///< In the part's link frame.
+  Pose origin;             ///< In the part's link frame.
+  std::uint32_t tint = 0;  ///< For tint_of().
 };
 
 /// Rebuilt only when bodies or shapes are added, removed or changed; shared by the snapshots in between.
@@ -38,8 +39,8 @@ struct RenderScene {
   std::vector<RenderShape> shapes;
   std::vector<RenderInstance> instances;
 
-  /// Copies the persistent values of visuals, camera, look and materials to Snapshot::visuals. Allocates only if they
-  /// have grown. [sim]
+  /// Copies the persistent values of visuals, camera, look, materials and tints to Snapshot::visuals. Allocates only if
+  /// they have grown. [sim]
   void copy_visuals(std::span<const double> persistent, std::vector<double>& to) const;
 
  private:
@@ -47,7 +48,7 @@ struct RenderScene {
     std::uint32_t offset = 0;  // index in the persistent values
     std::uint32_t width = 0;
   };
-  std::vector<Block> blocks_;  // visuals, camera, look, then materials
+  std::vector<Block> blocks_;  // visuals, camera, look, materials, then the tints of parts
 };
 
 /// A material. Colors are hue, saturation, brightness.
@@ -61,6 +62,13 @@ struct Material {
   Vec3 diffuse_color{0};
 };
 Material material_of(const Snapshot& snapshot, std::uint32_t material);
+
+/// The tint of a part.
+struct Tint {
+  Vec3 color{1};  ///< Red, green, blue; multiplies the colors of the part's shapes.
+  double transparency = 0;
+};
+Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance);
 
 /// The camera. The view matrix is T(position)·Rx·Ry·Rz, with rotations in degrees.
 struct CameraSettings {

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "model/look/mesh_look.h"
+
 namespace limber::engine {
 
 namespace {
@@ -13,12 +15,13 @@ namespace {
 bool same_mesh(const std::shared_ptr<const model::MeshModel>& a, const std::shared_ptr<const model::MeshModel>& b) {
   if (a == b) return true;
   return a != nullptr && b != nullptr && a->hull == b->hull && a->vertices == b->vertices &&
-         a->triangles == b->triangles;
+         a->triangles == b->triangles && same_look(*a, *b);
 }
 
 bool same_geometry(const model::ShapeModel& a, const model::ShapeModel& b) {
   return a.kind == b.kind && a.normal == b.normal && a.size == b.size && a.radius == b.radius && a.height == b.height &&
-         same_mesh(a.mesh, b.mesh) && nearly_same(a.mesh_pose, b.mesh_pose);
+         same_mesh(a.mesh, b.mesh) && nearly_same(a.mesh_pose, b.mesh_pose) && a.mesh_colors == b.mesh_colors &&
+         same_image(a.texture, b.texture);
 }
 
 bool same_geometry(const ShapeDescription& a, const ShapeDescription& b) {
@@ -48,6 +51,10 @@ bool same_construction(const JointDescription& a, const JointDescription& b) {
 
 bool same_construction(const MotorDescription& a, const MotorDescription& b) { return a.joint == b.joint; }
 
+bool same_construction(const SensorDescription& a, const SensorDescription& b) {
+  return a.name == b.name && a.kind == b.kind && a.part == b.part;
+}
+
 template <class T>
 bool all_same_construction(const std::vector<T>& a, const std::vector<T>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
@@ -61,7 +68,8 @@ bool same_model(const std::shared_ptr<const model::BodyModel>& a, const std::sha
 
 bool same_construction(const BodyDescription& a, const BodyDescription& b) {
   return same_model(a.model, b.model) && all_same_construction(a.parts, b.parts) &&
-         all_same_construction(a.joints, b.joints) && all_same_construction(a.motors, b.motors);
+         all_same_construction(a.joints, b.joints) && all_same_construction(a.motors, b.motors) &&
+         all_same_construction(a.sensors, b.sensors);
 }
 
 template <class T>
@@ -175,6 +183,11 @@ BodyDiff compare_bodies(const BodyDescription& before, const BodyDescription& no
   for (std::size_t i = 0; i < now.motors.size(); i++) {
     const MotorDescription& motor = now.motors[i];
     add_mask(out.rebuild ? motor_of(before, now.joints[motor.joint].name) : &before.motors[i], motor.values);
+  }
+  for (std::size_t i = 0; i < now.sensors.size(); i++) {
+    const SensorDescription* const old_sensor = old_counterpart(before.sensors, now.sensors, i, out.rebuild);
+    const bool same_kind = old_sensor != nullptr && old_sensor->kind == now.sensors[i].kind;
+    add_mask(same_kind ? old_sensor : nullptr, now.sensors[i].values);
   }
   compare_pairs(before, now, out);
   compare_start_poses(before, now, out);
@@ -293,6 +306,7 @@ BodyDiff compare_unmanaged(const BodyDescription& existing, const BodyDescriptio
   for (const PartDescription& part : now.parts) out.changed.push_back(explicit_mask(part.values));
   for (const JointDescription& joint : now.joints) out.changed.push_back(explicit_mask(joint.values));
   for (const MotorDescription& motor : now.motors) out.changed.push_back(explicit_mask(motor.values));
+  for (const SensorDescription& sensor : now.sensors) out.changed.push_back(explicit_mask(sensor.values));
   out.pairs = now.pairs;
   out.position_changed = now.start.position_set;
   out.rotation_changed = now.start.rotation_set;

@@ -103,6 +103,12 @@ void SceneReloader::report_timers(const script::CarriedTimers& timers, bool from
   }
 }
 
+std::vector<std::string> SceneReloader::body_names() const {
+  std::vector<std::string> names;
+  for (const BodyDescription& body : spec_->bodies) names.push_back(body.name);
+  return names;
+}
+
 void SceneReloader::report_fixed() {
   for (const std::string& file : std::exchange(files_with_errors_, {})) host_.script_error(file, 0, "");
 }

@@ -38,6 +38,12 @@ class SceneReloader {
     options_.limits = limits;
     options_.keep_timers = true;
   }
+  /// Sets the text that runs after the file in later candidates (SceneOptions::added). [sim]
+  void set_added(std::string text) { options_.added = std::move(text); }
+  /// Makes files() return the files of the last successful run, after a run that reused the sources. [sim]
+  void update_files() { set_files({}); }
+  /// Returns the names of the bodies that the last successful run has created. [sim]
+  std::vector<std::string> body_names() const;
   /// Applies a candidate made from a request of make_request() to the session. [sim]
   ApplyResult apply_candidate(ReloadCandidate& candidate, Session& session);
   /// True if a parameter with `rerun` has changed since the last call and the last request. [sim]

@@ -248,6 +248,57 @@ SceneReloader::ApplyResult SceneRunner::apply_candidate(ReloadCandidate& candida
   return result;
 }
 
+// Begins a run of the scene with one more line; its inputs are copied between two ticks.
+ReloadRequest SceneRunner::request_with(const AddedModel& model) {
+  show_.added += lua_line(model, model.path);
+  reloader_.set_added(show_.added);
+  begin_run(TakeSceneRun::Kind::reload_requested, true);
+  return reloader_.make_request(*show_.session, true);
+}
+
+// Applies the run to the show. If it has failed, the line is removed, and the show stays as it is.
+Result<void> SceneRunner::apply_added(ReloadCandidate& candidate, const std::string& previous) {
+  const Run run = begin_run(TakeSceneRun::Kind::reload_finished);
+  Result<void> result = candidate.result();
+  SceneReloader::ApplyResult applied = SceneReloader::ApplyResult::failed;
+  if (result) applied = apply_candidate(candidate);
+  if (applied == SceneReloader::ApplyResult::applied) {
+    recording_.run_succeeded(run.index, *show_.session);
+    reloader_.update_files();
+    return {};
+  }
+  show_.added = previous;
+  reloader_.set_added(previous);
+  return result ? Error{"the scene was reset or reloaded meanwhile; try again"} : result;
+}
+
+Result<AddedModel> SceneRunner::add_model(const std::string& path, const model::BodyModel& model) {
+  constexpr int kTries = 3;  // the first ones may be outdated by resets and reloads
+  Result<AddedModel> result = Error{};
+  for (int i = 0; i < kTries && !result; i++) {
+    std::optional<ReloadRequest> request;
+    AddedModel added;
+    std::string previous;
+    Result<void> done = run_between_ticks([&] {
+      if (show_.session->scene == nullptr) return;
+      std::vector<std::string> names = reloader_.body_names();
+      for (const std::string_view name : show_.session->world.body_names()) names.emplace_back(name);
+      added = place_model(show_.session->world, path, model, names);
+      previous = show_.added;
+      request = request_with(added);
+    });
+    if (!done) return Error{done.error()};
+    if (!request) return Error{"the scene has an error; models can be added once it is fixed"};
+    ReloadCandidate candidate(std::move(*request), host_);
+    Result<void> applied;
+    done = run_between_ticks([&] { applied = apply_added(candidate, previous); });
+    if (!done) return Error{done.error()};
+    result = applied ? Result<AddedModel>(added) : Result<AddedModel>(Error{applied.error()});
+    if (!candidate.result()) break;
+  }
+  return result;
+}
+
 Result<void> SceneRunner::change_scene(const std::string& file, std::optional<std::uint64_t> panics) {
   const std::uint64_t panics_at_request = panics.value_or(show_.link.panics.load());
   auto fresh = show_.new_session();
@@ -271,6 +322,7 @@ Result<void> SceneRunner::change_scene(const std::string& file, std::optional<st
 
 void SceneRunner::play_scene(const std::string& file, std::unique_ptr<Session>& fresh, Presets::Bank& bank) {
   show_.options.scene = file;
+  show_.added.clear();
   show_.overrides.clear();
   show_.undo_stack.clear();
   capture_run(*fresh, show_.scene_options(), file);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/recovery/recovery_control.h"
+#include "engine/reload/added_model.h"
 #include "engine/reload/scene_host.h"
 #include "engine/reload/scene_reloader.h"
 #include "engine/sim_thread_executor.h"
@@ -34,6 +35,8 @@ class SceneRunner {
   bool reload(bool reuse_files);
   /// See Engine::change_scene(). [any but sim]
   Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics);
+  /// See Engine::add_model(). [any but sim]
+  Result<AddedModel> add_model(const std::string& path, const model::BodyModel& model);
   /// Runs `work` between two ticks. Error if a take plays, or if the show has ended. [any but sim]
   Result<void> run_between_ticks(const std::function<void()>& work);
   /// Loads the presets of a scene. May wait for the disk. [any]
@@ -69,6 +72,8 @@ class SceneRunner {
   void reapply_overrides();
   Result<void> apply_initial_overrides();
   void begin_show();
+  ReloadRequest request_with(const AddedModel& model);
+  Result<void> apply_added(ReloadCandidate& candidate, const std::string& previous);
 
   ShowState& show_;
   TakeRecording& recording_;

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "sim/gears/gear_list.h"
+#include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
 #include "sim/visuals/visuals.h"
@@ -61,7 +62,7 @@ BodyDescription body_of(const sim::Body& body, const Shapes& shapes) {
     part_index[part.get()] = out.parts.size();
     const auto shape = shapes.find(part->shape().slot);
     out.parts.push_back({part->name(), spec_values_of(store, part->id()),
-                         start_pose_of(store, part->id(), part->pose()), part->is_static(),
+                         start_pose_of(store, part->id(), part->pose()), part->mass() == 0,
                          shape == shapes.end() ? nullptr : shape->second, trees[out.parts.size()]});
   }
   if (!out.parts.empty()) {
@@ -79,6 +80,10 @@ BodyDescription body_of(const sim::Body& body, const Shapes& shapes) {
   }
   for (const auto& motor : body.motors()) {
     out.motors.push_back({joint_index[&motor->joint()], spec_values_of(store, motor->id())});
+  }
+  for (const auto& sensor : body.sensors().list()) {
+    out.sensors.push_back(
+        {sensor->name(), sensor->kind(), part_index[&sensor->part()], spec_values_of(store, sensor->id())});
   }
   for (const sim::PartPair& pair : body.pairs().list()) {
     if (pair.edit != sim::PairEdit::none) out.pairs.push_back({pair.a, pair.b, pair.edit});
@@ -100,6 +105,7 @@ std::vector<NodeId> objects_of(const sim::Body& body) {
   add(body.parts());
   add(body.joints());
   add(body.motors());
+  add(body.sensors().list());
   return ids;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/sensors/sensor.h"
 #include "sim/world/joint.h"
 #include "sim/world/world.h"
 
@@ -56,6 +57,12 @@ struct MotorDescription {
   std::size_t joint = 0;  ///< Index of the joint.
   SpecValues values;
 };
+struct SensorDescription {
+  std::string name;
+  sim::SensorKind kind{};
+  std::size_t part = 0;  ///< Index of the part.
+  SpecValues values;
+};
 /// A pair of parts, by index, that a script excluded from or included in collision.
 struct PairDescription {
   std::size_t a = 0;
@@ -92,6 +99,7 @@ struct BodyDescription {
   std::vector<PartDescription> parts;
   std::vector<JointDescription> joints;
   std::vector<MotorDescription> motors;
+  std::vector<SensorDescription> sensors;
   std::vector<PairDescription> pairs;
   std::vector<BehaviorDescription> behaviors;
 };
@@ -111,7 +119,7 @@ struct SceneSpec {
 SceneSpec describe(const sim::World& world);
 BodyDescription describe_body(const sim::Body& body);
 
-/// Returns the ids of a body and its parts, joints and motors, in this order.
+/// Returns the ids of a body and its parts, joints, motors and sensors, in this order.
 std::vector<NodeId> objects_of(const sim::Body& body);
 
 /// Returns a bit mask of the properties that a description contains: stored and writable ones, except poses of parts.

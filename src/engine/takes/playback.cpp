@@ -27,7 +27,8 @@ script::ScriptLimits replay_limits(bool in_show) {
 
 ShowRules rules_of(const TakePlayer& player, bool in_show) {
   ShowRules rules;
-  rules.before_first_revision = player.rules() == 0;
+  rules.before_first_revision = player.rules() < 1;
+  rules.before_second_revision = player.rules() < 2;
   rules.keeps_timers = player.keeps_timers();
   rules.frames_scenes = player.frames_scenes();
   if (!player.current_scripts()) rules.limits = replay_limits(in_show);
@@ -58,7 +59,7 @@ Result<void> TakePlayback::start() {
 Result<void> TakePlayback::begin(std::unique_ptr<TakePlayer> player, const std::string& file, bool in_show) {
   input_ = std::make_unique<TakeInput>(show_, executor_, rewinder_, live_, std::move(player), in_show);
   show_.input = input_.get();
-  show_.rules = rules_of(input_->player(), in_show);
+  show_.set_rules(rules_of(input_->player(), in_show));
   show_.history.set_max_bytes(kMaxReplayHistoryBytes);
   name_ = title_of_take(file);
   const TakeInitialState& initial_state = input_->player().initial_state();
@@ -183,6 +184,7 @@ std::unique_ptr<Session> TakePlayback::begin_in_show(std::unique_ptr<TakePlayer>
                                                      Presets::Bank& bank) {
   live_.reject_commands(TakeInput::kReplayingError);
   recovery_.set_suspended(true);
+  show_.added.clear();  // the take has its own
   show_.overrides.clear();
   show_.undo_stack.clear();
   presets_after_ = show_.presets.exchange({});
@@ -207,13 +209,16 @@ void TakePlayback::end() {
   const ReplayResult result = input_->player().result();
   show_.input = &live_;
   input_ = nullptr;
-  show_.rules = {};
+  show_.set_rules({});
   recovery_.set_suspended(false);
   reload_request_.reset();
   show_.presets.exchange(std::exchange(presets_after_, {}));
   const script::ScriptLimits& limits = show_.options.scene_options.limits;
   if (show_.session->scene != nullptr) show_.session->scene->set_limits(limits);
   scenes_.reloader().set_limits(limits);
+  if (show_.session->scene != nullptr)  // models that were added in the take stay
+    show_.added = show_.session->scene->sources()->added();
+  scenes_.reloader().set_added(show_.added);
   show_.history.clear("a take was played before");
   log_info("{}: {}; live input resumed", printable(name_), text_of(result));
   const double diverged_at = result.diverged_at ? static_cast<double>(*result.diverged_at) : -1;

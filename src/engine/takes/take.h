@@ -27,8 +27,9 @@ inline constexpr int kFirstComparableTakeVersion = 3;
 inline constexpr int kFirstTakeVersionKeepingTimers = 4;
 inline constexpr int kFirstTakeVersionFramingScenes = 5;
 /// Revision of the engine's behavior that a replay must reproduce. 1: a handler that failed is disabled, repeated panic
-/// requests are ignored for a second, handlers have a time budget. 0: older takes, without these rules.
-inline constexpr int kTakeRules = 1;
+/// requests are ignored for a second, handlers have a time budget. 2: a static part moves at the velocity that is set,
+/// and between poses that are set in consecutive ticks. 0: older takes, without these rules.
+inline constexpr int kTakeRules = 2;
 /// Start of the first line, before the version. The second line is readable JSON (TakeHeader); frames follow.
 inline constexpr const char* kTakeMagic = "limber take ";
 

@@ -91,8 +91,8 @@ Result<std::vector<double>> numbers_of(const Element* element, std::size_t min_c
 }
 
 IdIndex::IdIndex(const Element* top) {
-  constexpr std::array<std::string_view, 7> kKinds{"geometry", "controller", "source",      "float_array",
-                                                   "vertices", "node",       "visual_scene"};
+  constexpr std::array<std::string_view, 10> kKinds{"geometry", "controller",   "source", "float_array", "vertices",
+                                                    "node",     "visual_scene", "image",  "effect",      "material"};
   // the first element with a key wins; ids take precedence over sids and names
   for (const char* key : {"id", "sid", "name"}) {
     for (const Element* e = top; e; e = next_element(e, top)) {
@@ -123,15 +123,21 @@ Result<AffineTransform> unit_scale(const Element* root) {
   return error_at(unit, fmt::format("meter={} is invalid", quoted_word(text)));
 }
 
-void append(const MeshSoup& from, const AffineTransform& transform, MeshSoup& to) {
+/// Appends triangles to the result; `materials`: of the geometry's symbols.
+void append(const GeometrySoup& from, const AffineTransform& transform, const std::vector<std::uint32_t>& materials,
+            MeshSoup& to, SoupLook* look) {
   const bool flipped = glm::determinant(transform.linear) < 0;
-  for (std::size_t i = 0; i + 2 < from.size(); i += 3) {
-    const Vec3 b = transform * from[i + 1], c = transform * from[i + 2];
-    to.insert(to.end(), {transform * from[i], flipped ? c : b, flipped ? b : c});
+  for (std::size_t i = 0; i + 2 < from.points.size(); i += 3) {
+    for (const std::size_t k : {i, flipped ? i + 2 : i + 1, flipped ? i + 1 : i + 2}) {
+      if (look != nullptr && !from.texcoords.empty()) look->set_texcoord(to.size(), from.texcoords[k]);
+      to.push_back(transform * from.points[k]);
+    }
+    if (look != nullptr) look->paint(to.size(), materials[from.triangle_symbols[i / 3]]);
   }
 }
 
-Result<MeshSoup> collect_triangles(const Scene& scene, const AffineTransform& unit, GeometryReader& geometries) {
+Result<MeshSoup> collect_triangles(const Scene& scene, const AffineTransform& unit, GeometryReader& geometries,
+                                   MaterialReader* materials, SoupLook* look) {
   MeshSoup soup;
   std::vector<std::pair<int, AffineTransform>> stack{{scene.root, unit}};
   while (!stack.empty()) {
@@ -139,11 +145,13 @@ Result<MeshSoup> collect_triangles(const Scene& scene, const AffineTransform& un
     stack.pop_back();
     const Node& node = scene.nodes[static_cast<std::size_t>(index)];
     const AffineTransform transform = parent_transform * node.transform;
-    for (const Element* geometry : node.geometries) {
-      const Result<const MeshSoup*> triangles = geometries.read(geometry);
+    for (const GeometryInstance& instance : node.geometries) {
+      const Result<const GeometrySoup*> triangles = geometries.read(instance.geometry);
       if (!triangles) return Error{triangles.error()};
-      if (soup.size() + (*triangles)->size() > 3 * kMaxMeshTriangles) return too_many_triangles();
-      append(**triangles, transform, soup);
+      if (soup.size() + (*triangles)->points.size() > 3 * kMaxMeshTriangles) return too_many_triangles();
+      std::vector<std::uint32_t> bound;
+      if (materials != nullptr) bound = materials->bind(instance.instance, (*triangles)->symbols);
+      append(**triangles, transform, bound, soup, look);
     }
     for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
       stack.emplace_back(*child, transform);
@@ -157,7 +165,7 @@ Result<MeshSoup> collect_triangles(const Scene& scene, const AffineTransform& un
 
 namespace limber::model {
 
-Result<MeshSoup> soup_from_collada(std::string_view bytes) {
+Result<MeshSoup> soup_from_collada(std::string_view bytes, SoupLook* look) {
   if (bytes.size() > kMaxUrdfBytes) {
     return Error{fmt::format("has {} bytes; Collada files must have at most {}. Export it as binary STL.", bytes.size(),
                              kMaxUrdfBytes)};
@@ -179,8 +187,10 @@ Result<MeshSoup> soup_from_collada(std::string_view bytes) {
   const collada::IdIndex ids(root);
   const Result<collada::Scene> scene = collada::read_scene(root, ids);
   if (!scene) return Error{scene.error()};
-  collada::GeometryReader geometries(ids);
-  return collada::collect_triangles(*scene, *unit, geometries);
+  collada::GeometryReader geometries(ids, look);
+  std::optional<collada::MaterialReader> materials;
+  if (look != nullptr) materials.emplace(ids, *look);
+  return collada::collect_triangles(*scene, *unit, geometries, materials ? &*materials : nullptr, look);
 }
 
 }  // namespace limber::model

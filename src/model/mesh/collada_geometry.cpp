@@ -48,20 +48,6 @@ Result<std::vector<std::size_t>> polygon_sizes(const Element* polylist, std::siz
   return error_at(list, fmt::format("<vcount> requires {} corners, but <p> contains {}", sum, corners));
 }
 
-void add_strip(std::span<const Vec3> corners, MeshSoup& soup) {
-  for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
-    // every second triangle of a strip has the opposite winding
-    const std::size_t odd = i % 2;
-    soup.insert(soup.end(), {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]});
-  }
-}
-
-void add_fan(std::span<const Vec3> corners, MeshSoup& soup) {
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    soup.insert(soup.end(), {corners[0], corners[i], corners[i + 1]});
-  }
-}
-
 // Reads the positions of X, Y and Z among the parameters of an accessor. Returns a bit for each that it names.
 template <class Axes>
 int read_axes(const Element& accessor, Axes& axes) {
@@ -75,6 +61,11 @@ int read_axes(const Element& accessor, Axes& axes) {
     found |= 1 << axis;
   }
   return found;
+}
+
+const Element* accessor_of(const Element* source) {
+  const Element* common = source->FirstChildElement("technique_common");
+  return common ? common->FirstChildElement("accessor") : nullptr;
 }
 
 }  // namespace
@@ -97,12 +88,8 @@ Result<const std::vector<double>*> GeometryReader::array_of(const Element* sourc
   return &entry->second;
 }
 
-Result<GeometryReader::Points> GeometryReader::points_of(const Element* source, const IdIndex& local_ids) {
-  const auto known = points_.find(source);
-  if (known != points_.end()) return known->second;
-  const Element* common = source->FirstChildElement("technique_common");
-  const Element* accessor = common ? common->FirstChildElement("accessor") : nullptr;
-  if (!accessor) return error_at(source, "a source has no <accessor>");
+Result<GeometryReader::Points> GeometryReader::view_of(const Element* source, const Element* accessor,
+                                                       const IdIndex& local_ids) {
   const Result<const std::vector<double>*> numbers = array_of(source, accessor, local_ids);
   if (!numbers) return Error{numbers.error()};
   Points points;
@@ -114,6 +101,17 @@ Result<GeometryReader::Points> GeometryReader::points_of(const Element* source, 
     if (!*attribute) return Error{attribute->error()};
   }
   points.count = *count, points.stride = *stride, points.offset = *offset;
+  return points;
+}
+
+Result<GeometryReader::Points> GeometryReader::points_of(const Element* source, const IdIndex& local_ids) {
+  const auto known = points_.find(source);
+  if (known != points_.end()) return known->second;
+  const Element* accessor = accessor_of(source);
+  if (!accessor) return error_at(source, "a source has no <accessor>");
+  Result<Points> read = view_of(source, accessor, local_ids);
+  if (!read) return read;
+  Points& points = *read;
   const int axes_found = read_axes(*accessor, points.axis);
   const std::size_t farthest = *std::max_element(points.axis.begin(), points.axis.end());
   if ((axes_found != 0 && axes_found != 7) || farthest >= points.stride) {
@@ -158,22 +156,60 @@ Result<GeometryReader::Layout> GeometryReader::layout_of(const Element* primitiv
   const Result<Points> points = points_of(source, local_ids);
   if (!points) return Error{points.error()};
   layout.points = *points;
+  if (look_ != nullptr) find_texcoords(primitive, local_ids, layout);
   return layout;
 }
 
-Result<void> GeometryReader::read_indices(const Element* list, const Layout& layout, std::vector<Vec3>& corners) {
+/// Uses the first set of texture coordinates; without one that can be read, the layout has none.
+void GeometryReader::find_texcoords(const Element* primitive, const IdIndex& local_ids, Layout& layout) {
+  for (const Element* e = primitive->FirstChildElement("input"); e; e = e->NextSiblingElement("input")) {
+    const char* semantic = e->Attribute("semantic");
+    if (!semantic || std::string_view(semantic) != "TEXCOORD") continue;
+    if (layout.texcoords) {
+      look_->report(Severity::note, "texcoord sets", "further sets of texture coordinates are not used",
+                    "Nothing to do, unless a texture appears misplaced.");
+      return;
+    }
+    const Element* source = local_ids.find("source", e->Attribute("source"));
+    const Element* accessor = source ? accessor_of(source) : nullptr;
+    const Result<std::size_t> offset = integer_attribute(e, "offset", 0, kMaxStride);
+    Result<Points> view = accessor ? view_of(source, accessor, local_ids) : Result<Points>(Error{"no accessor"});
+    const bool fits = view && offset && view->stride >= 2 && view->count > 0 &&
+                      view->offset + (view->count - 1) * view->stride + 1 < view->numbers->size();
+    if (!fits) {
+      look_->report(Severity::warning, "texcoords", "texture coordinates can't be read; its textures are not drawn",
+                    "Export the mesh again.");
+      continue;
+    }
+    layout.texcoords = *view;
+    layout.texcoord_offset = *offset;
+  }
+}
+
+Result<void> GeometryReader::read_indices(const Element* list, const Layout& layout, Corners& corners) {
   const Points& points = layout.points;
   ElementTokenizer words(list);
   std::size_t at = 0;
   for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++at) {
     const std::optional<std::int64_t> index = parse_integer(word);
     if (!index) return not_integers(list, words.line());
+    if (layout.texcoords && at % layout.stride == layout.texcoord_offset) {
+      const Points& texcoords = *layout.texcoords;
+      TexCoord& texcoord = corners.texcoords.emplace_back();
+      if (*index >= 0 && static_cast<std::size_t>(*index) < texcoords.count) {
+        const double* st =
+            texcoords.numbers->data() + texcoords.offset + static_cast<std::size_t>(*index) * texcoords.stride;
+        // they start at the bottom left
+        texcoord = {static_cast<float>(std::clamp(st[0], -1e4, 1e4)),
+                    static_cast<float>(std::clamp(1 - st[1], -1e4, 1e4))};
+      }
+    }
     if (at % layout.stride != layout.offset) continue;
     if (*index < 0 || static_cast<std::size_t>(*index) >= points.count) {
       return mesh_error(words.line(), fmt::format("point {} not found; there are {}", *index, points.count));
     }
     const double* first = points.numbers->data() + points.offset + static_cast<std::size_t>(*index) * points.stride;
-    corners.emplace_back(first[points.axis[0]], first[points.axis[1]], first[points.axis[2]]);
+    corners.points.emplace_back(first[points.axis[0]], first[points.axis[1]], first[points.axis[2]]);
   }
   if (words.found_non_text()) return not_integers(list, words.line());
   if (at % layout.stride == 0) return {};
@@ -181,27 +217,55 @@ Result<void> GeometryReader::read_indices(const Element* list, const Layout& lay
                   fmt::format("<{}> contains {} numbers, expected a multiple of {}", list->Name(), at, layout.stride));
 }
 
+void GeometryReader::add_corner(const Corners& corners, std::size_t corner, GeometrySoup& soup) {
+  soup.points.push_back(corners.points[corner]);
+  if (corner >= corners.texcoords.size()) return;
+  soup.texcoords.resize(soup.points.size());
+  soup.texcoords.back() = corners.texcoords[corner];
+}
+
+void GeometryReader::add_polygon(const Corners& corners, std::size_t first, std::size_t count, GeometrySoup& soup) {
+  indices_.clear();
+  triangulator_.triangulate(std::span(corners.points).subspan(first, count), indices_);
+  for (const std::size_t i : indices_) add_corner(corners, first + i, soup);
+}
+
+void GeometryReader::add_strip(const Corners& corners, GeometrySoup& soup) {
+  for (std::size_t i = 0; i + 2 < corners.points.size(); ++i) {
+    // every second triangle of a strip has the opposite winding
+    const std::size_t odd = i % 2;
+    for (const std::size_t k : {i, i + 1 + odd, i + 2 - odd}) add_corner(corners, k, soup);
+  }
+}
+
+void GeometryReader::add_fan(const Corners& corners, GeometrySoup& soup) {
+  for (std::size_t i = 1; i + 1 < corners.points.size(); ++i) {
+    for (const std::size_t k : {std::size_t{0}, i, i + 1}) add_corner(corners, k, soup);
+  }
+}
+
 /// Reads <triangles> and <polylist>: their <p> lists are concatenated.
-Result<void> GeometryReader::read_concatenated_lists(const Element* primitive, const Layout& layout, MeshSoup& soup) {
-  std::vector<Vec3> corners;
+Result<void> GeometryReader::read_concatenated_lists(const Element* primitive, const Layout& layout,
+                                                     GeometrySoup& soup) {
+  Corners corners;
   for (const Element* p = primitive->FirstChildElement("p"); p; p = p->NextSiblingElement("p")) {
     if (Result<void> read = read_indices(p, layout, corners); !read) return read;
   }
-  std::size_t found = corners.size() / 3;
+  const std::size_t total = corners.points.size();
+  std::size_t found = total / 3;
   if (kind_of(primitive) == Kind::polylist) {
-    const Result<std::vector<std::size_t>> sizes = polygon_sizes(primitive, corners.size());
+    const Result<std::vector<std::size_t>> sizes = polygon_sizes(primitive, total);
     if (!sizes) return Error{sizes.error()};
-    std::span<const Vec3> rest(corners);
+    std::size_t first = 0;
     for (const std::size_t size : *sizes) {
-      triangulator_.triangulate(rest.first(size), soup);
-      rest = rest.subspan(size);
+      add_polygon(corners, first, size, soup);
+      first += size;
     }
     found = sizes->size();
-  } else if (corners.size() % 3 == 0) {
-    soup.insert(soup.end(), corners.begin(), corners.end());
+  } else if (total % 3 == 0) {
+    for (std::size_t i = 0; i < total; ++i) add_corner(corners, i, soup);
   } else {
-    return error_at(primitive,
-                    fmt::format("<triangles> contains {} corners, expected a multiple of 3", corners.size()));
+    return error_at(primitive, fmt::format("<triangles> contains {} corners, expected a multiple of 3", total));
   }
   const Result<std::size_t> count = integer_attribute(primitive, "count", found, kMaxEntries);
   if (!count) return Error{count.error()};
@@ -210,16 +274,16 @@ Result<void> GeometryReader::read_concatenated_lists(const Element* primitive, c
 }
 
 /// Reads <polygons>, <tristrips> and <trifans>: one <p> list each. Holes of polygons are ignored.
-Result<void> GeometryReader::read_separate_lists(const Element* primitive, const Layout& layout, MeshSoup& soup) {
+Result<void> GeometryReader::read_separate_lists(const Element* primitive, const Layout& layout, GeometrySoup& soup) {
   const std::optional<Kind> kind = kind_of(primitive);
-  std::vector<Vec3> corners;
+  Corners corners;
   for (const Element* e = primitive->FirstChildElement(); e; e = e->NextSiblingElement()) {
     const Element* list = is_named(e, "ph") ? e->FirstChildElement("p") : e;
     if (!list || !is_named(list, "p")) continue;
     corners.clear();
     if (Result<void> read = read_indices(list, layout, corners); !read) return read;
     if (kind == Kind::polygons) {
-      triangulator_.triangulate(corners, soup);
+      add_polygon(corners, 0, corners.points.size(), soup);
     } else if (kind == Kind::trifans) {
       add_fan(corners, soup);
     } else {
@@ -230,9 +294,9 @@ Result<void> GeometryReader::read_separate_lists(const Element* primitive, const
   return count ? Result<void>() : Error{count.error()};
 }
 
-Result<const MeshSoup*> GeometryReader::read(const Element* geometry) {
+Result<const GeometrySoup*> GeometryReader::read(const Element* geometry) {
   const auto [entry, is_new] = soups_.try_emplace(geometry);
-  MeshSoup& soup = entry->second;
+  GeometrySoup& soup = entry->second;
   if (!is_new) return &soup;
   const Element* mesh = geometry->FirstChildElement("mesh");
   if (!mesh) mesh = geometry->FirstChildElement("convex_mesh");
@@ -248,9 +312,13 @@ Result<const MeshSoup*> GeometryReader::read(const Element* geometry) {
     const Result<void> read =
         joined ? read_concatenated_lists(e, *layout, soup) : read_separate_lists(e, *layout, soup);
     if (!read) return Error{read.error()};
-    if (corners_ + soup.size() > 3 * kMaxMeshTriangles) return too_many_triangles();
+    if (corners_ + soup.points.size() > 3 * kMaxMeshTriangles) return too_many_triangles();
+    const char* symbol = e->Attribute("material");
+    soup.symbols.emplace_back(symbol ? symbol : "");
+    soup.triangle_symbols.resize(soup.points.size() / 3, static_cast<std::uint32_t>(soup.symbols.size() - 1));
   }
-  corners_ += soup.size();
+  if (!soup.texcoords.empty()) soup.texcoords.resize(soup.points.size());
+  corners_ += soup.points.size();
   return &soup;
 }
 

@@ -116,8 +116,8 @@ class SceneReader {
         if (!found) return not_found(e, "node");
         node.children.push_back(node_index_.at(found));
       } else if (is_named(e, "instance_geometry") || is_named(e, "instance_controller")) {
-        node.geometries.push_back(geometry_of(e));
-        if (!node.geometries.back()) return not_found(e, "geometry");
+        node.geometries.push_back({geometry_of(e), e});
+        if (node.geometries.back().geometry == nullptr) return not_found(e, "geometry");
       } else if (Result<void> applied = apply_transform(e, node.transform); !applied) {
         return applied;
       }

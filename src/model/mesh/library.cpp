@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "model/look/mesh_look.h"
 #include "model/mesh/load.h"
 #include "model/xml_text.h"
 
@@ -20,6 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMaxParentFolders = 8;
 constexpr std::size_t kMaxPathParts = 32;
+constexpr int kParentsInOtherCase = 2;
 
 bool is_file(const fs::path& path) {
   std::error_code fault;
@@ -76,7 +78,58 @@ fs::path find_upwards(fs::path at, const std::vector<fs::path>& suffixes) {
   return {};
 }
 
+// A file below a folder whose path differs from `path` in the case of letters only; empty: not found.
+fs::path find_in_other_case(fs::path folder, const fs::path& path) {
+  for (const fs::path& part : path) {
+    std::error_code fault;
+    const fs::path exact = folder / part;
+    folder = fs::exists(exact, fault) ? exact : fs::path(find_in_any_case(folder.string(), part.string()));
+    if (folder.empty()) return {};
+  }
+  return is_file(folder) ? folder : fs::path();
+}
+
+// Searches a few folders only, because each try reads folders.
+fs::path find_in_other_case(const fs::path& start, const std::vector<std::string>& package_paths,
+                            const std::vector<fs::path>& suffixes) {
+  std::vector<fs::path> folders{start};
+  for (int i = 0; i < kParentsInOtherCase; ++i) folders.push_back(folders.back().parent_path());
+  folders.insert(folders.end(), package_paths.begin(), package_paths.end());
+  for (const fs::path& folder : folders) {
+    for (const fs::path& suffix : suffixes) {
+      if (fs::path found = find_in_other_case(folder, suffix); !found.empty()) return found;
+    }
+  }
+  return {};
+}
+
+// Searches for the path as it is, in the order that find_mesh() documents; empty: not found.
+std::string find_path(const fs::path& path, const fs::path& start, const std::vector<std::string>& package_paths) {
+  if (path.is_absolute() && is_file(path)) return canonical_path(path);
+  if (path.is_relative() && is_file(start / path)) return canonical_path(start / path);
+  const std::vector<fs::path> suffixes = path_suffixes(path);
+  for (const std::string& packages : package_paths) {
+    for (const fs::path& suffix : suffixes) {
+      if (is_file(fs::path(packages) / suffix)) return canonical_path(fs::path(packages) / suffix);
+    }
+  }
+  const fs::path found = find_upwards(start, suffixes);
+  return found.empty() ? std::string() : canonical_path(found);
+}
+
 }  // namespace
+
+bool differs_in_case(const std::string& uri, const std::string& path) {
+  const fs::path written = percent_decoded(path_of(uri)), found = path;
+  auto a = written.end();
+  auto b = found.end();
+  while (a != written.begin() && b != found.begin()) {
+    const std::string x = (--a)->string(), y = (--b)->string();
+    if (!same_in_any_case(x, y)) return false;
+    if (x != y) return true;
+  }
+  return false;
+}
 
 Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
                               const std::vector<std::string>& package_paths) {
@@ -86,20 +139,18 @@ Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
   }
   if (uri.find('\0') != std::string::npos || uri.size() > 4096)
     return Error{"its path is invalid. Use a shorter path."};
-  const fs::path path = path_of(uri);
-  if (path.is_absolute() && is_file(path)) return canonical_path(path);
+  const std::string path = path_of(uri);
   std::error_code fault;
   const fs::path start = fs::absolute(folder.empty() ? "." : folder, fault);
-  if (path.is_relative() && is_file(start / path)) return canonical_path(start / path);
-  const std::vector<fs::path> suffixes = path_suffixes(path);
-  std::string searched = printable(start.string());
-  for (const std::string& packages : package_paths) {
-    searched += ", " + printable(packages);
-    for (const fs::path& suffix : suffixes) {
-      if (is_file(fs::path(packages) / suffix)) return canonical_path(fs::path(packages) / suffix);
-    }
+  // a name may be that of a URI, in which %20 stands for a blank
+  const std::string decoded = percent_decoded(path);
+  for (const std::string& each : {path, decoded}) {
+    if (std::string found = find_path(each, start, package_paths); !found.empty()) return found;
   }
-  if (const fs::path found = find_upwards(start, suffixes); !found.empty()) return canonical_path(found);
+  const fs::path other_case = find_in_other_case(start, package_paths, path_suffixes(decoded));
+  if (!other_case.empty()) return canonical_path(other_case);
+  std::string searched = printable(start.string());
+  for (const std::string& packages : package_paths) searched += ", " + printable(packages);
   return Error{fmt::format("'{}' not found in {}, and parent folders. Put the file there, or give --package-path DIR.",
                            printable(uri), searched)};
 }
@@ -121,13 +172,21 @@ Result<std::string> MeshLibrary::read(const std::string& path, std::size_t max_b
   return *bytes;
 }
 
-Result<std::shared_ptr<const MeshModel>> MeshLibrary::load_from_memory(const std::string& path,
-                                                                       const Vec3& scale) const {
+Result<std::shared_ptr<const MeshModel>> MeshLibrary::load_from_memory(const std::string& path, const Vec3& scale) {
   const std::string* const bytes = memory_files_->content(path);
   if (bytes == nullptr) return Error{fmt::format("{}: is not among the saved files.", printable(path))};
   const Result<MeshFormat> format = mesh_format_of(path);
   if (!format) return Error{fmt::format("{}: {}", printable(path), format.error())};
-  return mesh_from_bytes(*bytes, *format, scale, fs::path(path).stem().string());
+  FileLookup files(path, images_, memory_files_.get());
+  return mesh_from_bytes(*bytes, *format, scale, fs::path(path).stem().string(), &files);
+}
+
+bool MeshLibrary::Entry::is_current(const std::string& path) {
+  if (!stamp.is_current(path)) return false;
+  for (std::size_t i = 0; i < look_stamps.size(); ++i) {
+    if (!look_stamps[i].is_current(mesh->look->files[i].first)) return false;
+  }
+  return true;
 }
 
 Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& path, const Vec3& scale) {
@@ -135,16 +194,21 @@ Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& pa
   {
     const std::lock_guard lock(mutex_);
     const auto found = meshes_.find(key);
-    if (found != meshes_.end() && (memory_files_ != nullptr || found->second.stamp.is_current(path)))
+    if (found != meshes_.end() && (memory_files_ != nullptr || found->second.is_current(path)))
       return found->second.mesh;
   }
   // loaded without holding the lock: if two threads load the same mesh, the first one's is used
   const FileStamp stamp = memory_files_ == nullptr ? FileStamp(path) : FileStamp();
-  auto mesh = memory_files_ == nullptr ? load_mesh(path, scale) : load_from_memory(path, scale);
+  FileLookup files(path, images_, nullptr);
+  auto mesh = memory_files_ == nullptr ? load_mesh(path, scale, &files) : load_from_memory(path, scale);
   if (!mesh) return mesh;
+  Entry loaded{stamp, *mesh, {}};
+  if (memory_files_ == nullptr && (*mesh)->look != nullptr) {
+    for (const auto& file : (*mesh)->look->files) loaded.look_stamps.emplace_back(file.first);
+  }
   const std::lock_guard lock(mutex_);
   Entry& entry = meshes_[key];
-  if (!entry.mesh || !(entry.stamp == stamp)) entry = {stamp, *mesh};
+  if (!entry.mesh || !(entry.stamp == stamp) || entry.look_stamps != loaded.look_stamps) entry = std::move(loaded);
   return entry.mesh;
 }
 

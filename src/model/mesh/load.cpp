@@ -14,6 +14,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "model/look/soup_look.h"
 #include "model/mesh/fit_primitive.h"
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
@@ -24,21 +25,26 @@ namespace limber::model {
 
 namespace {
 
-constexpr std::array<std::string_view, 4> kExtensions{"stl", "obj", "dae", "msh"};
+constexpr std::array<std::string_view, 7> kExtensions{"stl", "obj", "dae", "msh", "ply", "gltf", "glb"};
 constexpr double kMaxCoordinate = 1e6;
 
-Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format) {
+Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format, SoupLook& look) {
   switch (format) {
     case MeshFormat::stl:
-      return soup_from_stl(bytes);
+      return soup_from_stl(bytes, &look);
     case MeshFormat::obj:
-      return soup_from_obj(bytes);
+      return soup_from_obj(bytes, &look);
     case MeshFormat::dae:
-      return soup_from_collada(bytes);
+      return soup_from_collada(bytes, &look);
     case MeshFormat::msh:
       return soup_from_msh(bytes);
+    case MeshFormat::ply:
+      return soup_from_ply(bytes, &look);
+    case MeshFormat::gltf:
+    case MeshFormat::glb:
+      return soup_from_gltf(bytes, &look);
   }
-  return Error{"is not a supported mesh format. Use an STL, OBJ or DAE file."};
+  return Error{"is not a supported mesh format. Use an STL, OBJ, DAE, PLY or glTF file."};
 }
 
 struct VertexHash {
@@ -50,8 +56,14 @@ struct VertexHash {
   }
 };
 
+template <class T>
+void move_triangle(std::vector<T>& corners, std::size_t from, std::size_t to) {
+  if (corners.empty()) return;
+  for (std::size_t k = 0; k < 3; ++k) corners[3 * to + k] = corners[3 * from + k];
+}
+
 /// Merges equal vertices and drops triangles that then use a vertex twice.
-void weld(const MeshSoup& soup, MeshModel& out) {
+void weld(const MeshSoup& soup, MeshModel& out, MeshLook* look) {
   std::unordered_map<Vec3, unsigned, VertexHash> number;
   number.reserve(soup.size() / 4);
   out.triangles.reserve(soup.size());
@@ -63,17 +75,35 @@ void weld(const MeshSoup& soup, MeshModel& out) {
       corner[k] = found->second;
     }
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    if (look != nullptr) {
+      const std::size_t to = out.triangles.size() / 3;
+      if (!look->triangle_materials.empty()) look->triangle_materials[to] = look->triangle_materials[i / 3];
+      move_triangle(look->texcoords, i / 3, to);
+      move_triangle(look->colors, i / 3, to);
+    }
     out.triangles.insert(out.triangles.end(), corner.begin(), corner.end());
   }
+  if (look == nullptr) return;
+  if (!look->triangle_materials.empty()) look->triangle_materials.resize(out.triangles.size() / 3);
+  if (!look->texcoords.empty()) look->texcoords.resize(out.triangles.size());
+  if (!look->colors.empty()) look->colors.resize(out.triangles.size());
 }
 
-void flip_winding(std::vector<unsigned>& triangles) {
-  for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) std::swap(triangles[i + 1], triangles[i + 2]);
+template <class T>
+void flip_corners(std::vector<T>& corners) {
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) std::swap(corners[i + 1], corners[i + 2]);
+}
+
+void flip_winding(MeshModel& mesh, MeshLook* look) {
+  flip_corners(mesh.triangles);
+  if (look == nullptr) return;
+  flip_corners(look->texcoords);
+  flip_corners(look->colors);
 }
 
 /// Computes hulls, the matching primitive, closedness and mass properties. A closed mesh uses its own volume if that is
 /// plausible; other meshes use that of their hull.
-void compute_properties(MeshModel& mesh) {
+void compute_properties(MeshModel& mesh, MeshLook* look) {
   const Hull complete = convex_hull(mesh.vertices);
   const Hull contact = reduced_hull(complete);
   mesh.hull = contact.vertices;
@@ -84,7 +114,7 @@ void compute_properties(MeshModel& mesh) {
   mesh.closed = is_closed(mesh.triangles);
   Inertial own = mesh.closed ? unit_inertial_of(mesh.vertices, mesh.triangles) : Inertial{};
   if (own.mass < 0) {
-    flip_winding(mesh.triangles);
+    flip_winding(mesh, look);
     own.mass = -own.mass;
     own.tensor = -own.tensor;
   }
@@ -100,16 +130,17 @@ Result<MeshFormat> mesh_format_of(std::string_view path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   for (std::size_t i = 0; i < kExtensions.size(); ++i) {
-    if (extension.size() == 4 && extension.substr(1) == kExtensions[i]) return static_cast<MeshFormat>(i);
+    if (extension.size() > 1 && extension.substr(1) == kExtensions[i]) return static_cast<MeshFormat>(i);
   }
-  return Error{"is not a supported mesh format. Use an STL, OBJ or DAE file."};
+  return Error{"is not a supported mesh format. Use an STL, OBJ, DAE, PLY or glTF file."};
 }
 
 Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes, MeshFormat format, const Vec3& scale,
-                                                         const std::string& name) {
+                                                         const std::string& name, LookFiles* files) {
   if (bytes.empty()) return Error{"is empty. Export it again."};
   try {
-    Result<MeshSoup> soup = read_soup(bytes, format);
+    SoupLook soup_look(files);
+    Result<MeshSoup> soup = read_soup(bytes, format, soup_look);
     if (!soup) return Error{soup.error()};
     for (Vec3& v : *soup) {
       v *= scale;
@@ -120,10 +151,12 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
     auto mesh = std::make_shared<MeshModel>();
     mesh->name = name;
     mesh->content_hash = hash_bytes(bytes);
-    weld(*soup, *mesh);
+    const std::shared_ptr<MeshLook> look = soup_look.release(soup->size());
+    mesh->look = look;
+    weld(*soup, *mesh, look.get());
     if (mesh->triangles.empty()) return Error{"contains no triangles. Export it again, as a surface."};
-    if (scale.x * scale.y * scale.z < 0) flip_winding(mesh->triangles);
-    compute_properties(*mesh);
+    if (scale.x * scale.y * scale.z < 0) flip_winding(*mesh, look.get());
+    compute_properties(*mesh, look.get());
     if (mesh->hull.size() < 4) return Error{"is too small to have a hull. Check its scale: URDF uses meters."};
     return std::shared_ptr<const MeshModel>(std::move(mesh));
   } catch (const std::exception& e) {
@@ -131,12 +164,12 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
   }
 }
 
-Result<std::shared_ptr<const MeshModel>> load_mesh(const std::string& path, const Vec3& scale) {
+Result<std::shared_ptr<const MeshModel>> load_mesh(const std::string& path, const Vec3& scale, LookFiles* files) {
   const Result<MeshFormat> format = mesh_format_of(path);
   if (!format) return Error{fmt::format("{}: {}", printable(path), format.error())};
   const Result<std::string> bytes = read_whole_file(path, kMaxMeshBytes);
   if (!bytes) return Error{bytes.error()};
-  auto mesh = mesh_from_bytes(*bytes, *format, scale, std::filesystem::path(path).stem().string());
+  auto mesh = mesh_from_bytes(*bytes, *format, scale, std::filesystem::path(path).stem().string(), files);
   if (!mesh) return Error{fmt::format("{}: {}", printable(path), mesh.error())};
   return mesh;
 }

@@ -109,6 +109,12 @@ Inertial unit_inertial_of(const ShapeModel& shape) {
       out.mass = 4.0 / 3 * kPi * r * r * r;
       out.tensor = Mat3(0.4 * out.mass * r * r);
       break;
+    case ShapeKind::ellipsoid: {
+      const Vec3 s = shape.size * shape.size;
+      out.mass = kPi / 6 * shape.size.x * shape.size.y * shape.size.z;
+      out.tensor = diagonal(s.y + s.z, s.x + s.z, s.x + s.y) * (out.mass / 20);
+      break;
+    }
     case ShapeKind::cylinder:
       out.mass = kPi * r * r * h;
       out.tensor = diagonal(3 * r * r + h * h, 3 * r * r + h * h, 6 * r * r) * (out.mass / 12);

@@ -1,12 +1,20 @@
-// Wavefront OBJ reader: vertices and faces only; groups, normals, texture coordinates, curves and materials are
-// ignored.
+// Wavefront OBJ reader: vertices, faces, texture coordinates and materials; groups, normals and curves are ignored.
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
 
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "model/look/mtl.h"
+#include "model/look/soup_look.h"
 #include "model/mesh/load.h"
 #include "model/mesh/triangles.h"
+#include "model/xml_numbers.h"
 
 namespace limber::model {
 
@@ -14,30 +22,37 @@ namespace {
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
-/// Iterates over the 'v' and 'f' lines of an OBJ file; lines continued with a backslash are read as one.
+enum class ObjLine : std::uint8_t { vertex, texcoord, face, use_material, material_file };
+constexpr std::array<std::string_view, 5> kObjWords{"v", "vt", "f", "usemtl", "mtllib"};
+
+/// Iterates over the lines of an OBJ file that start with one of kObjWords; lines continued with a backslash are read
+/// as one.
 class ObjLines {
  public:
   explicit ObjLines(std::string_view text) : text_(text) {}
 
-  /// Finds the next vertex or face; false at the end.
+  /// Finds the next line; false at the end.
   bool next() {
     while (position_ < text_.size()) {
       line_ = current_line_;
       const std::size_t from = std::min(text_.find_first_not_of(" \t", position_), text_.size());
       position_ = from;
-      const bool wanted = from + 1 < text_.size() && (text_[from] == 'v' || text_[from] == 'f') &&
-                          (text_[from + 1] == ' ' || text_[from + 1] == '\t');
+      const std::string_view start = text_.substr(from, 8);
+      const std::string_view word = start.substr(0, start.find_first_of(" \t"));
+      const auto* const known = std::find(kObjWords.begin(), kObjWords.end(), word);
+      const bool wanted = known != kObjWords.end() && word.size() < start.size();
       advance_to_line_end(wanted);
       const std::string_view whole = text_.substr(from, position_ - from);
       advance_line();
       if (!wanted) continue;
-      kind_ = whole[0];
-      rest_ = whole.substr(1, whole.find('#') - 1);
+      kind_ = static_cast<ObjLine>(known - kObjWords.begin());
+      const bool has_names = kind_ == ObjLine::use_material || kind_ == ObjLine::material_file;
+      rest_ = whole.substr(word.size(), has_names ? std::string_view::npos : whole.find('#') - word.size());
       return true;
     }
     return false;
   }
-  char kind() const { return kind_; }
+  ObjLine kind() const { return kind_; }
   int line() const { return line_; }
   void rewind() { position_ = 0, current_line_ = 1; }
 
@@ -51,6 +66,8 @@ class ObjLines {
     rest_.remove_prefix(to);
     return word;
   }
+  /// The rest of this line.
+  std::string_view rest() const { return trimmed(rest_); }
 
  private:
   /// Advances to the end of the line, or of its last continuation line.
@@ -72,11 +89,11 @@ class ObjLines {
   std::size_t position_ = 0;
   int current_line_ = 1;
   int line_ = 1;
-  char kind_ = ' ';
+  ObjLine kind_ = ObjLine::vertex;
 };
 
 /// Reads x y z, optionally followed by a weight or a color. Returns the error text, or empty on success.
-std::string read_vertex(ObjLines& lines, Vec3& v) {
+std::string read_vertex(ObjLines& lines, Vec3& v, std::optional<CornerColor>& color) {
   for (int i = 0; i < 3; ++i) {
     const std::string_view word = lines.word();
     const std::optional<double> number = parse_number(word);
@@ -85,62 +102,170 @@ std::string read_vertex(ObjLines& lines, Vec3& v) {
     v[i] = *number;
   }
   const std::string_view fourth = lines.word();
-  if (fourth.empty() || !lines.word().empty()) return {};
-  const double weight = parse_number(fourth).value_or(0);
+  if (fourth.empty()) return {};
+  const std::optional<double> number = parse_number(fourth);
+  if (const std::string_view fifth = lines.word(); !fifth.empty()) {
+    const std::optional<double> green = parse_number(fifth), blue = parse_number(lines.word());
+    if (!number || !green || !blue) return {};
+    const auto byte = [](double channel) {
+      return static_cast<std::uint8_t>(std::clamp(channel, 0.0, 1.0) * 255 + 0.5);
+    };
+    color = CornerColor{byte(*number), byte(*green), byte(*blue), 255};
+    return {};
+  }
+  const double weight = number.value_or(0);
   if (weight == 0) return fmt::format("{} is not a weight of a vertex", quoted_word(fourth));
   v /= weight;
   return is_finite(v) ? std::string() : "a vertex is not finite";
 }
 
-/// Reads corners written as v, v/vt, v//vn or v/vt/vn. Returns the error text, or empty on success.
-std::string read_face(ObjLines& lines, const std::vector<Vec3>& vertices, std::size_t vertices_before,
-                      std::vector<Vec3>& outline) {
-  outline.clear();
-  for (std::string_view word = lines.word(); !word.empty(); word = lines.word()) {
-    const std::optional<std::int64_t> index = parse_integer(word.substr(0, word.find('/')));
-    if (!index || word.find_first_not_of("+-/0123456789") != std::string_view::npos) {
-      return fmt::format("{} is not a corner of a face", quoted_word(word));
-    }
-    // 1-based, or negative: relative to the last vertex before the face
-    const std::int64_t at = *index < 0 ? static_cast<std::int64_t>(vertices_before) + *index : *index - 1;
-    if (at < 0 || at >= static_cast<std::int64_t>(vertices.size())) {
-      return fmt::format("a face uses vertex {}, but there are {}", *index,
-                         *index < 0 ? vertices_before : vertices.size());
-    }
-    outline.push_back(vertices[static_cast<std::size_t>(at)]);
-  }
-  return {};
+/// Texture coordinates start at the bottom left in OBJ files. Unreadable ones are 0.
+TexCoord read_texcoord(ObjLines& lines) {
+  constexpr double kMax = 1e4;
+  std::array<double, 2> read{};
+  for (double& number : read) number = std::clamp(parse_number(lines.word()).value_or(0), -kMax, kMax);
+  return {static_cast<float>(read[0]), static_cast<float>(1 - read[1])};
 }
+
+/// Reads an OBJ file in two passes, because a face may refer to vertices further down.
+class ObjReader {
+ public:
+  ObjReader(std::string_view bytes, SoupLook* look) : lines_(bytes), look_(look) {}
+
+  Result<MeshSoup> read() {
+    if (Result<void> points = read_points(); !points) return Error{points.error()};
+    lines_.rewind();
+    if (Result<void> faces = read_faces(); !faces) return Error{faces.error()};
+    return std::move(soup_);
+  }
+
+ private:
+  static constexpr std::size_t kNoTexcoord = std::numeric_limits<std::size_t>::max();
+
+  Result<void> read_points() {
+    while (lines_.next()) {
+      if (lines_.kind() == ObjLine::vertex) {
+        vertices_.emplace_back(0);
+        std::optional<CornerColor> color;
+        const std::string fault = read_vertex(lines_, vertices_.back(), color);
+        if (!fault.empty()) return mesh_error(lines_.line(), fault);
+        if (vertices_.size() > 3 * kMaxMeshTriangles) return too_many_triangles();
+        if (color) colors_.resize(vertices_.size(), {255, 255, 255, 255});
+        if (color) colors_.back() = *color;
+      } else if (look_ != nullptr && lines_.kind() == ObjLine::texcoord) {
+        texcoords_.push_back(read_texcoord(lines_));
+        if (texcoords_.size() > 3 * kMaxMeshTriangles) return too_many_triangles();
+      } else if (look_ != nullptr && lines_.kind() == ObjLine::material_file) {
+        read_materials(std::string(lines_.rest()));
+      }
+    }
+    return {};
+  }
+
+  void read_materials(const std::string& name) {
+    if (look_->files() == nullptr || material_files_++ >= kMaxMaterialFiles) return;
+    const Result<std::string> file = look_->files()->read(name, ".mtl", kMaxMaterialFileBytes);
+    if (file) return read_mtl(*file, *look_, materials_);
+    const std::string& text = file.error();
+    const std::size_t end = std::min(text.rfind(". "), text.size());
+    look_->report(Severity::warning, "material file",
+                  fmt::format("material file {}; drawn without its colors", text.substr(0, end)),
+                  end == text.size() ? "Fix the file." : text.substr(end + 2));
+    lacks_materials_ = true;
+  }
+
+  Result<void> read_faces() {
+    while (lines_.next()) {
+      if (lines_.kind() == ObjLine::vertex) {
+        ++vertices_before_;
+      } else if (lines_.kind() == ObjLine::texcoord) {
+        ++texcoords_before_;
+      } else if (lines_.kind() == ObjLine::use_material) {
+        use_material(lines_.rest());
+      } else if (lines_.kind() == ObjLine::face) {
+        const std::string fault = read_face();
+        if (!fault.empty()) return mesh_error(lines_.line(), fault);
+        if (soup_.size() / 3 + outline_.size() > kMaxMeshTriangles + 2) return too_many_triangles();
+        add_face();
+      }
+    }
+    return {};
+  }
+
+  void use_material(std::string_view name) {
+    if (look_ == nullptr) return;
+    const auto found = materials_.find(name);
+    material_ = found == materials_.end() ? SoupLook::kNoMaterial : found->second;
+    if (found != materials_.end() || lacks_materials_ || materials_.empty()) return;
+    look_->report(Severity::warning, "material",
+                  fmt::format("material '{}' not found in its material file; drawn white", printable(name)),
+                  "Export the mesh again.");
+  }
+
+  /// Reads corners written as v, v/vt, v//vn or v/vt/vn. Returns the error text, or empty on success.
+  std::string read_face() {
+    outline_.clear();
+    corner_vertices_.clear();
+    corner_texcoords_.clear();
+    for (std::string_view word = lines_.word(); !word.empty(); word = lines_.word()) {
+      const std::size_t slash = word.find('/');
+      const std::optional<std::int64_t> index = parse_integer(word.substr(0, slash));
+      if (!index || word.find_first_not_of("+-/0123456789") != std::string_view::npos) {
+        return fmt::format("{} is not a corner of a face", quoted_word(word));
+      }
+      // 1-based, or negative: relative to the last vertex before the face
+      const std::int64_t at = *index < 0 ? static_cast<std::int64_t>(vertices_before_) + *index : *index - 1;
+      if (at < 0 || at >= static_cast<std::int64_t>(vertices_.size())) {
+        return fmt::format("a face uses vertex {}, but there are {}", *index,
+                           *index < 0 ? vertices_before_ : vertices_.size());
+      }
+      outline_.push_back(vertices_[static_cast<std::size_t>(at)]);
+      corner_vertices_.push_back(static_cast<std::size_t>(at));
+      corner_texcoords_.push_back(slash == std::string_view::npos ? kNoTexcoord
+                                                                  : texcoord_index(word.substr(slash + 1)));
+    }
+    return {};
+  }
+
+  std::size_t texcoord_index(std::string_view word) const {
+    const std::optional<std::int64_t> index = parse_integer(word.substr(0, word.find('/')));
+    if (!index) return kNoTexcoord;
+    const std::int64_t at = *index < 0 ? static_cast<std::int64_t>(texcoords_before_) + *index : *index - 1;
+    return at < 0 || at >= static_cast<std::int64_t>(texcoords_.size()) ? kNoTexcoord : static_cast<std::size_t>(at);
+  }
+
+  void add_face() {
+    indices_.clear();
+    triangulator_.triangulate(outline_, indices_);
+    for (const std::size_t i : indices_) {
+      const std::size_t corner = soup_.size();
+      soup_.push_back(outline_[i]);
+      if (look_ == nullptr) continue;
+      if (corner_texcoords_[i] != kNoTexcoord) look_->set_texcoord(corner, texcoords_[corner_texcoords_[i]]);
+      if (corner_vertices_[i] < colors_.size()) look_->set_color(corner, colors_[corner_vertices_[i]]);
+    }
+    if (look_ != nullptr) look_->paint(soup_.size(), material_);
+  }
+
+  ObjLines lines_;
+  SoupLook* look_;
+  MeshSoup soup_;
+  std::vector<Vec3> vertices_;
+  std::vector<CornerColor> colors_;  // of the first vertices; the others are white
+  std::vector<TexCoord> texcoords_;
+  std::map<std::string, std::uint32_t, std::less<>> materials_;
+  std::uint32_t material_ = SoupLook::kNoMaterial;
+  std::size_t material_files_ = 0;
+  bool lacks_materials_ = false;
+  std::size_t vertices_before_ = 0, texcoords_before_ = 0;
+  // of the current face
+  std::vector<Vec3> outline_;
+  std::vector<std::size_t> corner_vertices_, corner_texcoords_, indices_;
+  PolygonTriangulator triangulator_;
+};
 
 }  // namespace
 
-Result<MeshSoup> soup_from_obj(std::string_view bytes) {
-  ObjLines lines(bytes);
-  std::vector<Vec3> vertices;
-  while (lines.next()) {
-    if (lines.kind() != 'v') continue;
-    vertices.emplace_back(0);
-    const std::string fault = read_vertex(lines, vertices.back());
-    if (!fault.empty()) return mesh_error(lines.line(), fault);
-    if (vertices.size() > 3 * kMaxMeshTriangles) return too_many_triangles();
-  }
-  // second pass, because a face may refer to vertices further down
-  lines.rewind();
-  MeshSoup soup;
-  PolygonTriangulator triangulator;
-  std::vector<Vec3> outline;
-  std::size_t vertices_before = 0;
-  while (lines.next()) {
-    if (lines.kind() == 'v') {
-      ++vertices_before;
-      continue;
-    }
-    const std::string fault = read_face(lines, vertices, vertices_before, outline);
-    if (!fault.empty()) return mesh_error(lines.line(), fault);
-    if (soup.size() / 3 + outline.size() > kMaxMeshTriangles + 2) return too_many_triangles();
-    triangulator.triangulate(outline, soup);
-  }
-  return soup;
-}
+Result<MeshSoup> soup_from_obj(std::string_view bytes, SoupLook* look) { return ObjReader(bytes, look).read(); }
 
 }  // namespace limber::model

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "model/look/soup_look.h"
 #include "model/mesh/load.h"
 #include "model/mesh/triangles.h"
 
@@ -41,7 +42,43 @@ bool looks_ascii(std::string_view bytes) {
          contains_ignore_case(bytes, "facet") && contains_ignore_case(bytes, "vertex");
 }
 
-Result<MeshSoup> read_binary(std::string_view bytes, std::uint32_t count) {
+std::uint16_t facet_attribute(std::string_view bytes, std::uint32_t facet) {
+  std::uint16_t value = 0;
+  std::memcpy(&value, bytes.data() + kHeaderBytes + kFacetBytes * facet + kFacetBytes - 2, sizeof value);
+  return value;
+}
+
+CornerColor color_of_15_bits(std::uint16_t bits, bool red_first) {
+  const auto channel = [&](int shift) { return static_cast<std::uint8_t>(((bits >> shift & 31) * 255 + 15) / 31); };
+  return {channel(red_first ? 0 : 10), channel(5), channel(red_first ? 10 : 0), 255};
+}
+
+/// Reads the colors of facets, in one of two conventions. Magics: "COLOR=" in the header with the color of facets whose
+/// bit 15 is set; the others have 5 bits each of red, green and blue, from bit 0. VisCAM and SolidView: facets with bit
+/// 15 set have 5 bits each of blue, green and red; the others have none.
+void read_facet_colors(std::string_view bytes, std::uint32_t count, SoupLook& look) {
+  constexpr std::uint16_t kFlag = 0x8000;
+  constexpr std::string_view kColor = "COLOR=";
+  const std::size_t found = bytes.substr(0, kHeaderBytes - 4).find(kColor);
+  const bool magics = found != std::string_view::npos && found + kColor.size() + 4 <= kHeaderBytes - 4;
+  std::uint16_t any = 0;
+  for (std::uint32_t i = 0; i < count; ++i) any = static_cast<std::uint16_t>(any | facet_attribute(bytes, i));
+  if (!magics && (any & kFlag) == 0) return;
+  CornerColor common{255, 255, 255, 255};
+  if (magics) std::memcpy(common.data(), bytes.data() + found + kColor.size(), 3);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint16_t bits = facet_attribute(bytes, i);
+    // attributes that are all 0 were not written by Magics: only its header was
+    const bool own = magics ? (bits & kFlag) == 0 && any != 0 : (bits & kFlag) != 0;
+    const CornerColor color = own ? color_of_15_bits(bits, magics) : common;
+    for (std::size_t k = 0; k < 3; ++k) look.set_color(3 * std::size_t{i} + k, color);
+  }
+  MeshMaterial material;
+  material.name = "facet colors";
+  look.paint(3 * std::size_t{count}, look.add(std::move(material)));
+}
+
+Result<MeshSoup> read_binary(std::string_view bytes, std::uint32_t count, SoupLook* look) {
   if (count > kMaxMeshTriangles) return too_many_triangles();
   MeshSoup soup;
   soup.reserve(3 * static_cast<std::size_t>(count));
@@ -55,6 +92,7 @@ Result<MeshSoup> read_binary(std::string_view bytes, std::uint32_t count) {
       }
     }
   }
+  if (look != nullptr) read_facet_colors(bytes, count, *look);
   return soup;
 }
 
@@ -125,13 +163,13 @@ class AsciiReader {
 
 }  // namespace
 
-Result<MeshSoup> soup_from_stl(std::string_view bytes) {
+Result<MeshSoup> soup_from_stl(std::string_view bytes, SoupLook* look) {
   std::uint32_t count = 0;
   if (bytes.size() >= kHeaderBytes) std::memcpy(&count, bytes.data() + kHeaderBytes - 4, sizeof count);
   const std::size_t expected_size = kHeaderBytes + kFacetBytes * static_cast<std::size_t>(count);
   const bool ascii = looks_ascii(bytes);
   if (count > 0 && (bytes.size() == expected_size || (bytes.size() > expected_size && !ascii)))
-    return read_binary(bytes, count);
+    return read_binary(bytes, count, look);
   if (ascii) return AsciiReader(bytes).read();
   return Error{
       "can't be read: neither ASCII STL nor binary STL of the length in its header. Export it again as binary STL."};

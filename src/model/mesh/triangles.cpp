@@ -31,17 +31,19 @@ Vec3 newell_normal(std::span<const Vec3> corners) {
   return area;
 }
 
-void add_triangle_fan(std::span<const Vec3> corners, MeshSoup& out) {
+void add_triangle_fan(std::span<const std::size_t> corners, std::vector<std::size_t>& out) {
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     out.insert(out.end(), {corners[0], corners[i], corners[i + 1]});
   }
 }
 
-/// True if a-b-c is a left turn and contains no other corner. Corners at the positions of a, b or c (bridges to holes)
-/// are ignored.
-bool is_ear(const Vec3& a, const Vec3& b, const Vec3& c, std::span<const Vec3> corners, const Vec3& normal) {
+/// True if a-b-c is a left turn and contains none of the `remaining` corners. Corners at the positions of a, b or c
+/// (bridges to holes) are ignored.
+bool is_ear(const Vec3& a, const Vec3& b, const Vec3& c, std::span<const Vec3> corners,
+            std::span<const std::size_t> remaining, const Vec3& normal) {
   if (!(signed_area(a, b, c, normal) > 0)) return false;
-  return std::none_of(corners.begin(), corners.end(), [&](const Vec3& p) {
+  return std::none_of(remaining.begin(), remaining.end(), [&](std::size_t i) {
+    const Vec3& p = corners[i];
     if (p == a || p == b || p == c) return false;
     return signed_area(a, b, p, normal) >= 0 && signed_area(b, c, p, normal) >= 0 && signed_area(c, a, p, normal) >= 0;
   });
@@ -86,29 +88,33 @@ void MeshTokenizer::skip_line() {
 }
 
 void PolygonTriangulator::triangulate(std::span<const Vec3> corners, MeshSoup& out) {
+  indices_.clear();
+  triangulate(corners, indices_);
+  for (const std::size_t i : indices_) out.push_back(corners[i]);
+}
+
+void PolygonTriangulator::triangulate(std::span<const Vec3> corners, std::vector<std::size_t>& out) {
   const std::size_t count = corners.size();
   const Vec3 normal = count > 3 ? newell_normal(corners) : Vec3(0);
   bool convex = true;
   for (std::size_t i = 0; i < count && convex && count > 3; ++i) {
     convex = signed_area(corners[i], corners[(i + 1) % count], corners[(i + 2) % count], normal) >= 0;
   }
-  if (convex) {
-    add_triangle_fan(corners, out);
-  } else {
-    clip_ears(corners, normal, out);
-  }
+  if (!convex) return clip_ears(corners, normal, out);
+  for (std::size_t i = 1; i + 1 < count; ++i) out.insert(out.end(), {0, i, i + 1});
 }
 
-void PolygonTriangulator::clip_ears(std::span<const Vec3> corners, const Vec3& normal, MeshSoup& out) {
-  std::vector<Vec3> remaining(corners.begin(), corners.end());
+void PolygonTriangulator::clip_ears(std::span<const Vec3> corners, const Vec3& normal, std::vector<std::size_t>& out) {
+  std::vector<std::size_t> remaining(corners.size());
+  std::iota(remaining.begin(), remaining.end(), std::size_t{0});
   std::size_t at = 0, failures = 0;
   while (remaining.size() > 3 && failures < remaining.size() && steps_left_ > remaining.size()) {
     steps_left_ -= remaining.size();
     const std::size_t count = remaining.size();
-    const Vec3& a = remaining[(at + count - 1) % count];
-    const Vec3& b = remaining[at];
-    const Vec3& c = remaining[(at + 1) % count];
-    if (is_ear(a, b, c, remaining, normal)) {
+    const std::size_t a = remaining[(at + count - 1) % count];
+    const std::size_t b = remaining[at];
+    const std::size_t c = remaining[(at + 1) % count];
+    if (is_ear(corners[a], corners[b], corners[c], corners, remaining, normal)) {
       out.insert(out.end(), {a, b, c});
       remaining.erase(remaining.begin() + static_cast<std::ptrdiff_t>(at));
       at = at == count - 1 ? 0 : at;

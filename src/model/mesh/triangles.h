@@ -17,15 +17,21 @@ namespace limber::model {
 /// Triangles without shared vertices: three corners each, counter-clockwise seen from outside.
 using MeshSoup = std::vector<Vec3>;
 
+class SoupLook;
+
 /// Each reads the bytes of one file, in linear time and memory. The result has finite coordinates and at most
-/// kMaxMeshTriangles triangles. Errors give the line (of text formats) and the fix. [any]
-Result<MeshSoup> soup_from_stl(std::string_view bytes);
-Result<MeshSoup> soup_from_obj(std::string_view bytes);
+/// kMaxMeshTriangles triangles. Errors give the line (of text formats) and the fix. `look`: receives the colors; null:
+/// they are not read. [any]
+Result<MeshSoup> soup_from_stl(std::string_view bytes, SoupLook* look = nullptr);
+Result<MeshSoup> soup_from_obj(std::string_view bytes, SoupLook* look = nullptr);
+/// Reads the scene of a glTF 2.0 file (text or GLB), rotated from y up to z up.
+Result<MeshSoup> soup_from_gltf(std::string_view bytes, SoupLook* look = nullptr);
+Result<MeshSoup> soup_from_ply(std::string_view bytes, SoupLook* look = nullptr);
 Result<MeshSoup> soup_from_msh(std::string_view bytes);
 /// Reads the active scene, converted to meters by the file's unit; axes are not converted. Skins and morphs use their
 /// undeformed geometry; holes of polygons are ignored. Errors for <skew>, instances of missing elements, and files
 /// larger than 32 MB. [any]
-Result<MeshSoup> soup_from_collada(std::string_view bytes);
+Result<MeshSoup> soup_from_collada(std::string_view bytes, SoupLook* look = nullptr);
 
 /// An error with its line and a general fix: "line 3: <text>. Export it again, or as binary STL." [any]
 Error mesh_error(int line, std::string_view text);
@@ -66,11 +72,14 @@ class PolygonTriangulator {
  public:
   /// Appends the triangles of a polygon to `out`; none for fewer than three corners.
   void triangulate(std::span<const Vec3> corners, MeshSoup& out);
+  /// Appends the indices of the triangles' corners among those of the polygon.
+  void triangulate(std::span<const Vec3> corners, std::vector<std::size_t>& out);
 
  private:
-  void clip_ears(std::span<const Vec3> corners, const Vec3& normal, MeshSoup& out);
+  void clip_ears(std::span<const Vec3> corners, const Vec3& normal, std::vector<std::size_t>& out);
 
   std::uint64_t steps_left_ = 100'000'000;
+  std::vector<std::size_t> indices_;  // scratch
 };
 
 }  // namespace limber::model

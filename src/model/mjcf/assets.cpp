@@ -1,9 +1,13 @@
 // Assets: meshes and materials.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -29,8 +33,7 @@ bool is_valid_scale(const Vec3& scale) {
   return true;
 }
 
-}  // namespace
-
+/// A mesh of points; of the triangles of `faces` (three indices each), or of the convex hull if there are none.
 Result<std::shared_ptr<const MeshModel>> mesh_of_points(std::span<const Vec3> points, std::span<const unsigned> faces,
                                                         const std::string& name) {
   std::vector<Vec3> vertices(points.begin(), points.end());
@@ -50,18 +53,27 @@ Result<std::shared_ptr<const MeshModel>> mesh_of_points(std::span<const Vec3> po
   return mesh_from_bytes(text, MeshFormat::obj, Vec3(1), name);
 }
 
+std::string asset_path(const MjcfCompiler& compiler, const std::string& folder, const std::string& file) {
+  const std::filesystem::path path(file);
+  const std::filesystem::path inner = compiler.strip_path ? path.filename() : path;
+  return (std::filesystem::path(folder) / inner).lexically_normal().string();
+}
+
+}  // namespace
+
 void MjcfFileReader::read_assets(const MjcfElement& element) {
   for (const MjcfElement& e : element.children) {
-    if (meshes_.size() + materials_.size() > kMaxAssets) return;
+    if (meshes_.size() + materials_.size() + textures_.size() > kMaxAssets) return;
     if (e.name == "mesh") {
       read_mesh(e);
     } else if (e.name == "material") {
       read_material(e);
     } else if (e.name == "texture") {
-      reader_.unsupported(e, "<texture> ignored: shapes have plain colors", "Write rgba for the material.");
+      read_texture(e);
     } else {
-      reader_.unsupported(e, fmt::format("<{}> in <asset> ignored: it is not supported", printable_excerpt(e.name)),
-                          "Use <mesh> and <material>.", Severity::warning);
+      constexpr std::array<std::string_view, 6> kAssets{"mesh", "material", "texture", "hfield", "skin", "model"};
+      reader_.unknown(e, fmt::format("<{}> in <asset> ignored: it is not supported", printable_excerpt(e.name)),
+                      kAssets, "Use <mesh> and <material>.");
     }
   }
 }
@@ -95,9 +107,7 @@ void MjcfFileReader::read_mesh(const MjcfElement& element) {
   }
   if (const std::string* file = reader_.text(element, cls, "file")) {
     if (name.empty()) name = std::filesystem::path(*file).stem().string();
-    const std::filesystem::path path(*file);
-    const std::filesystem::path inner = reader_.compiler.strip_path ? path.filename() : path;
-    asset.uri = (std::filesystem::path(reader_.compiler.mesh_folder) / inner).lexically_normal().string();
+    asset.uri = asset_path(reader_.compiler, reader_.compiler.mesh_folder, *file);
   } else {
     read_inline_mesh(element, cls, asset);
   }
@@ -138,7 +148,24 @@ void MjcfFileReader::read_material(const MjcfElement& element) {
     material.color = Vec3(std::clamp(rgba[0], 0.0, 1.0), std::clamp(rgba[1], 0.0, 1.0), std::clamp(rgba[2], 0.0, 1.0));
     material.alpha = std::clamp(rgba[3], 0.0, 1.0);
   }
+  if (const std::string* const texture = reader_.text(element, cls, "texture")) material.texture = *texture;
   materials_.try_emplace(name, material);
+}
+
+void MjcfFileReader::read_texture(const MjcfElement& element) {
+  const std::string* const file = element.attribute("file");
+  const bool sky = element.attribute("type") != nullptr && *element.attribute("type") == "skybox";
+  if (file == nullptr) {
+    reader_.unsupported(element,
+                        sky ? "<texture type='skybox'> ignored: the scene sets the background"
+                            : "<texture> without a file ignored: shapes have plain colors",
+                        "Write rgba for the material.");
+    return;
+  }
+  reader_.unsupported(element, "<texture> ignored: shapes have plain colors", "Write rgba for the material.");
+  std::string name = reader_.name(element);
+  if (name.empty()) name = std::filesystem::path(*file).stem().string();
+  textures_.try_emplace(name, asset_path(reader_.compiler, reader_.compiler.texture_folder, *file));
 }
 
 }  // namespace limber::model

@@ -23,19 +23,20 @@ struct ElementAttributes {
 };
 
 constexpr std::string_view kActuatorUsed =
-    "name class joint jointinparent gear ctrllimited ctrlrange forcelimited forcerange gainprm biastype biasprm "
+    "name class joint jointinparent tendon gear kp kv ctrllimited ctrlrange forcelimited forcerange gainprm biastype "
+    "biasprm "
     "gaintype";
 constexpr std::string_view kActuatorIgnored =
-    "group lengthrange actlimited actrange user site refsite body tendon cranklength cranksite slidersite dyntype "
+    "group lengthrange actlimited actrange user site refsite body cranklength cranksite slidersite dyntype "
     "dynprm "
-    "actdim actearly kp kv dampratio timeconst inheritrange timelimit plugin area diameter bias lmin lmax vmax fpmax "
+    "actdim actearly dampratio timeconst inheritrange timelimit plugin area diameter bias lmin lmax vmax fpmax "
     "fvmax force scale range gain nsample interp delay";
 
-constexpr std::array<ElementAttributes, 17> kElements{{
+constexpr std::array<ElementAttributes, 22> kElements{{
     {"compiler",
      "angle eulerseq meshdir assetdir autolimits coordinate inertiafromgeom inertiagrouprange boundmass boundinertia "
-     "balanceinertia settotalmass strippath",
-     "texturedir discardvisual usethread fusestatic exactmeshinertia convexhull fitaabb alignfree saveinertial"},
+     "balanceinertia settotalmass strippath texturedir",
+     "discardvisual usethread fusestatic exactmeshinertia convexhull fitaabb alignfree saveinertial"},
     {"body", "name childclass pos quat axisangle euler xyaxes zaxis mocap", "user gravcomp sleep"},
     {"frame", "name childclass pos quat axisangle euler xyaxes zaxis", ""},
     {"inertial", "pos quat axisangle euler xyaxes zaxis mass diaginertia fullinertia", ""},
@@ -56,6 +57,13 @@ constexpr std::array<ElementAttributes, 17> kElements{{
      "texrepeat texuniform emission specular shininess reflectance metallic "
      "roughness"},
     {"exclude", "name class body1 body2", ""},
+    {"connect", "name class active body1 body2 anchor site1 site2", "solref solimp"},
+    {"weld", "name class active body1 body2 anchor relpose site1 site2", "solref solimp torquescale"},
+    {"equality of joints", "name class active joint1 joint2 tendon1 tendon2 polycoef", "solref solimp"},
+    {"fixed", "name class limited range stiffness damping frictionloss",
+     "group springlength solreflimit solimplimit solreffriction solimpfriction margin width material rgba user "
+     "armature actuatorfrclimited actuatorfrcrange"},
+    {"joint of a tendon", "joint coef", ""},
     {"general", kActuatorUsed, kActuatorIgnored},
     {"motor", kActuatorUsed, kActuatorIgnored},
     {"position", kActuatorUsed, kActuatorIgnored},
@@ -74,16 +82,15 @@ bool lists(std::string_view names, std::string_view name) {
 
 const char* fix_of(const std::set<std::string>& attributes) {
   if (attributes.contains("friction")) return "Set the friction of parts in the scene: part.friction.";
-  if (attributes.contains("kp")) return "A servo uses its whole effort; set modes and limits of motors in the scene.";
   if (attributes.contains("gravcomp")) return "Set forces in the scene.";
   return "Nothing to do, unless you expected an effect.";
 }
 
 }  // namespace
 
-void MjcfReader::check_attributes(const MjcfElement& element) {
-  const auto known = std::find_if(kElements.begin(), kElements.end(),
-                                  [&](const ElementAttributes& e) { return e.element == element.name; });
+void MjcfReader::check_attributes(const MjcfElement& element, std::string_view kind) {
+  const auto known =
+      std::find_if(kElements.begin(), kElements.end(), [&](const ElementAttributes& e) { return e.element == kind; });
   if (known == kElements.end()) return;
   for (const auto& [attribute, value] : element.attributes) {
     if (lists(known->used, attribute)) continue;

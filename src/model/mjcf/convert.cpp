@@ -54,6 +54,7 @@ class Converter {
     } else {
       add_tree(static_cast<std::size_t>(*chosen));
     }
+    convert_loops(file_, link_of_, static_cast<std::size_t>(*chosen), out_, problems_);
     add_exclusions();
     report_joints();
     report_springs();
@@ -229,7 +230,7 @@ class Converter {
     } else if (from.driven && effort_of(from) <= 0) {
       if (unlimited_++ == 0) first_unlimited_ = &from;
     }
-    if (from.driven && from.stiffness > 0 && sprung_++ == 0) first_sprung_ = &from;
+    if (from.driven && from.spring.stiffness > 0 && sprung_++ == 0) first_sprung_ = &from;
   }
 
   UrdfJoint converted(const MjcfJoint& from) {
@@ -243,11 +244,11 @@ class Converter {
     out.lower = from.limited ? from.lower - from.reference : 0;
     out.upper = from.limited ? from.upper - from.reference : 0;
     out.effort = effort_of(from) > 0 ? effort_of(from) : kDefaultEffort;
-    out.velocity = from.velocity;
+    if (from.velocity > 0) out.velocity = from.velocity;
     out.damping = from.damping;
     out.friction = from.friction;
-    out.stiffness = from.driven ? 0 : from.stiffness;
-    out.rest = from.rest;
+    out.armature = from.armature;
+    out.spring = from.driven ? from.gains : from.spring;
     out.start = from.start;
     out.driven = from.driven;
     out.mimic = from.mimic;
@@ -259,7 +260,7 @@ class Converter {
     bool collides = false;
     for (const MjcfGeom& geom : body(index).geoms) {
       const bool contact = geom.contact_type != 0 || geom.contact_affinity != 0;
-      const bool visible = geom.group <= kLastVisibleGroup && geom.shape.alpha > 0;
+      const bool visible = geom.group <= kLastVisibleGroup && geom.shape.material.alpha > 0;
       if (visible && (geom.shape.shape.kind != ShapeKind::plane || contact)) link.visuals.push_back(geom.shape);
       if (!contact) continue;
       collides = true;

@@ -20,6 +20,7 @@ struct MjcfCompiler {
   bool global = false;  ///< Poses are those in the world, not in the parent's frame.
   std::string euler_order = "xyz";
   std::string mesh_folder;
+  std::string texture_folder;
   bool strip_path = false;
   bool auto_limits = true;
   FromGeoms inertia_from_geoms = FromGeoms::automatic;
@@ -35,7 +36,6 @@ struct MjcfGeom {
   UrdfShape shape;
   std::optional<double> mass;     ///< Empty: from the density.
   double density = 1000;          ///< kg/m³.
-  std::optional<Inertial> unit;   ///< Mass properties at density 1, in the shape's frame; empty: from the shape.
   unsigned contact_type = 1;      ///< contype: it touches geoms whose affinity has one of these bits.
   unsigned contact_affinity = 1;  ///< conaffinity
   int group = 0;
@@ -53,8 +53,9 @@ struct MjcfJoint {
   double reference = 0;
   double damping = 0;
   double friction = 0;
-  double stiffness = 0;
-  double rest = 0;            ///< Of the spring, 0 at the home pose.
+  double armature = 0;
+  SpringModel spring;         ///< Its rest is 0 at the home pose.
+  SpringModel gains;          ///< Of a position actuator.
   double effort = 0;          ///< Of its actuators; 0: not limited.
   double largest_effort = 0;  ///< Of all actuators together; 0: not limited.
   double velocity = 0;
@@ -77,9 +78,21 @@ struct MjcfBody {
   Inertial inertial;                     ///< From `declared` or the geoms.
 };
 
+/// <connect> or <weld>. The loop is closed where both frames coincide.
+struct MjcfLoop {
+  std::string name;  ///< Empty: it has none.
+  int line = 0;
+  JointType type = JointType::spherical;  ///< Or fixed.
+  int body_1 = 0;                         ///< Index into MjcfFile::bodies.
+  int body_2 = 0;
+  Pose frame_1;                 ///< In body_1.
+  std::optional<Pose> frame_2;  ///< In body_2; empty: that of `frame_1` in the home pose.
+};
+
 struct MjcfFile {
   std::string name;
-  std::vector<MjcfBody> bodies;                 ///< bodies[0] is the world; parents come before their children.
+  std::vector<MjcfBody> bodies;  ///< bodies[0] is the world; parents come before their children.
+  std::vector<MjcfLoop> loops;
   std::vector<std::pair<int, int>> exclusions;  ///< <contact><exclude>: indices into `bodies`.
 };
 

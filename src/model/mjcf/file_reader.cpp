@@ -33,10 +33,8 @@ Result<MjcfFile> MjcfFileReader::run(const std::string& fallback_name) {
   file_.name = usable ? *written : name_error(fallback_name) ? "model" : fallback_name;
   for (const MjcfElement& e : document_.root.children) {
     if (std::find(kSections.begin(), kSections.end(), e.name) != kSections.end()) continue;
-    const std::string_view suggestion = nearest_name(e.name, kSections);
-    reader_.unsupported(e, fmt::format("<{}> ignored: MJCF has no such section", printable_excerpt(e.name)),
-                        suggestion.empty() ? "Remove it." : fmt::format("Did you mean <{}>?", suggestion),
-                        Severity::warning);
+    reader_.unknown(e, fmt::format("<{}> ignored: MJCF has no such section", printable_excerpt(e.name)), kSections,
+                    "Remove it.");
   }
   for_each_section("compiler", [&](const MjcfElement& e) { read_compiler(e); });
   reader_.read_defaults();
@@ -53,6 +51,7 @@ Result<MjcfFile> MjcfFileReader::run(const std::string& fallback_name) {
   }
   index_names();
   for_each_section("contact", [&](const MjcfElement& e) { read_contacts(e); });
+  for_each_section("tendon", [&](const MjcfElement& e) { read_tendons(e); });
   for_each_section("equality", [&](const MjcfElement& e) {
     for (const MjcfElement& child : e.children) read_equality(child);
   });
@@ -87,6 +86,9 @@ void MjcfFileReader::read_compiler(const MjcfElement& element) {
   if (coordinate != nullptr) to.global = *coordinate == "global";
   for (const char* const attribute : {"assetdir", "meshdir"}) {
     if (const std::string* folder = element.attribute(attribute)) to.mesh_folder = *folder;
+  }
+  for (const char* const attribute : {"assetdir", "texturedir"}) {
+    if (const std::string* folder = element.attribute(attribute)) to.texture_folder = *folder;
   }
   to.auto_limits = reader_.flag(element, 0, "autolimits").value_or(to.auto_limits);
   to.strip_path = reader_.flag(element, 0, "strippath").value_or(to.strip_path);
@@ -166,15 +168,10 @@ void MjcfFileReader::report_unknown(const MjcfElement& element, const MjcfElemen
     return;
   }
   constexpr std::array<std::string_view, 7> kKnown{"body", "geom", "site", "frame", "joint", "inertial", "freejoint"};
-  const std::string text = fmt::format("<{}> inside <{}> ignored: it is not supported", printable_excerpt(element.name),
-                                       printable_excerpt(parent.name));
-  if (reader_.count_unsupported(text)) return;
-  const std::string_view suggestion = nearest_name(element.name, kKnown);
-  const bool misspelled = !suggestion.empty() && suggestion != element.name;
-  reader_.unsupported(element, text,
-                      misspelled ? fmt::format("Did you mean <{}>?", suggestion)
-                                 : "Load the file in MuJoCo and save it: it then has plain bodies.",
-                      Severity::warning);
+  reader_.unknown(element,
+                  fmt::format("<{}> inside <{}> ignored: it is not supported", printable_excerpt(element.name),
+                              printable_excerpt(parent.name)),
+                  kKnown, "Load the file in MuJoCo and save it: it then has plain bodies.");
 }
 
 void MjcfFileReader::read_site(const MjcfElement& element, int index, MjcfClass inherited, const Pose& frame) {

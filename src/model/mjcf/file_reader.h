@@ -5,7 +5,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +33,18 @@ class MjcfFileReader {
     Vec3 scale{1, 1, 1};
     Pose reference;  // of the shape's frame in that of the scaled mesh
   };
+  struct Site {
+    int body = 0;
+    Pose pose;
+  };
+  struct TendonJoint {
+    MjcfJoint* joint = nullptr;
+    double factor = 1;
+  };
   struct Material {
     std::optional<Vec3> color;
     double alpha = 1;
+    std::string texture;  // its name; empty: none
   };
 
   // file_reader.cpp
@@ -61,18 +69,28 @@ class MjcfFileReader {
   bool read_from_to(const MjcfElement& element, MjcfClass cls, std::string_view type, const Pose& frame,
                     MjcfGeom& geom);
   bool set_mesh(const MjcfElement& element, const std::string& mesh, MjcfGeom& geom);
-  bool set_ellipsoid(const MjcfElement& element, const Vec3& radii, MjcfGeom& geom);
   void read_color(const MjcfElement& element, MjcfClass cls, MjcfGeom& geom);
   // assets.cpp
   void read_assets(const MjcfElement& element);
   void read_mesh(const MjcfElement& element);
   void read_inline_mesh(const MjcfElement& element, MjcfClass cls, MeshAsset& asset);
   void read_material(const MjcfElement& element);
+  void read_texture(const MjcfElement& element);
   // relations.cpp
   void read_actuator(const MjcfElement& element);
-  void limit_joint(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint);
+  void limit_joint(const MjcfElement& element, MjcfClass cls, double lever, MjcfJoint& joint);
   void read_contacts(const MjcfElement& section);
+  // tendons.cpp
+  void read_tendons(const MjcfElement& section);
+  void read_fixed_tendon(const MjcfElement& element);
+  // equality.cpp
   void read_equality(const MjcfElement& element);
+  void read_loop(const MjcfElement& element, MjcfClass cls);
+  void set_weld(const MjcfElement& element, MjcfClass cls, const Vec3& anchor, MjcfLoop& loop);
+  void couple_joints(const MjcfElement& element, MjcfClass cls);
+  void couple_tendon(const MjcfElement& element, MjcfClass cls);
+  const Site* site_named(const MjcfElement& element, const char* attribute);
+  // relations.cpp
   void read_keyframes(const MjcfElement& section);
   void apply_keyframe(const MjcfElement& element);
   void index_names();
@@ -95,13 +113,11 @@ class MjcfFileReader {
   std::map<std::string, int, std::less<>> body_index_;
   std::map<std::string, MjcfJoint*, std::less<>> joint_index_;
   std::vector<std::string> joint_names_;  // the first ones, for suggestions
+  std::map<std::string, Site, std::less<>> sites_;
+  std::map<std::string, std::vector<TendonJoint>, std::less<>> fixed_tendons_;  // the joints of each
   std::map<std::string, MeshAsset, std::less<>> meshes_;
   std::map<std::string, Material, std::less<>> materials_;
-  std::map<std::string, std::shared_ptr<const MeshModel>> ellipsoids_;  // by radii
+  std::map<std::string, std::string, std::less<>> textures_;  // the images of textures in files
 };
-
-/// A mesh of points; of the triangles of `faces` (three indices each), or of the convex hull if there are none. [any]
-Result<std::shared_ptr<const MeshModel>> mesh_of_points(std::span<const Vec3> points, std::span<const unsigned> faces,
-                                                        const std::string& name);
 
 }  // namespace limber::model

@@ -15,7 +15,6 @@ namespace limber::model {
 namespace {
 
 constexpr std::size_t kMaxGeomsOfBody = 1000;
-constexpr std::size_t kMaxEllipsoids = 500;  // different ones; each takes about a millisecond
 constexpr double kMaxLength = 1e4;
 constexpr double kMaxGeomMass = 1e7;
 
@@ -24,25 +23,6 @@ unsigned mask_of(double value) { return value >= 0 && value < 4294967296.0 ? sta
 /// The number of sizes that a geom type has.
 std::size_t size_count(std::string_view type) {
   return type == "sphere" ? 1 : type == "capsule" || type == "cylinder" ? 2 : 3;
-}
-
-/// Points of a sphere of radius 1: an octahedron, subdivided `times` times.
-std::vector<Vec3> sphere_points(int times) {
-  std::vector<std::array<Vec3, 3>> faces;
-  for (const double x : {1.0, -1.0})
-    for (const double y : {1.0, -1.0})
-      for (const double z : {1.0, -1.0}) faces.push_back({Vec3(x, 0, 0), Vec3(0, y, 0), Vec3(0, 0, z)});
-  for (int i = 0; i < times; ++i) {
-    std::vector<std::array<Vec3, 3>> finer;
-    for (const auto& [a, b, c] : faces) {
-      const Vec3 ab = normalized(a + b), bc = normalized(b + c), ca = normalized(c + a);
-      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-    }
-    faces = std::move(finer);
-  }
-  std::vector<Vec3> points;
-  for (const auto& face : faces) points.insert(points.end(), face.begin(), face.end());
-  return points;
 }
 
 void set_pose(MjcfGeom& geom, const Pose& pose) {
@@ -153,9 +133,8 @@ bool MjcfFileReader::read_size(const MjcfElement& element, MjcfClass cls, std::s
     return false;
   }
   ShapeModel& shape = geom.shape.shape;
-  if (type == "ellipsoid") return set_ellipsoid(element, {size[0], size[1], size[2]}, geom);
-  if (type == "box") {
-    shape.kind = ShapeKind::box;
+  if (type == "box" || type == "ellipsoid") {
+    shape.kind = type == "box" ? ShapeKind::box : ShapeKind::ellipsoid;
     shape.size = 2.0 * Vec3(size[0], size[1], size[2]);
     return true;
   }
@@ -189,37 +168,14 @@ bool MjcfFileReader::set_mesh(const MjcfElement& element, const std::string& mes
   return true;
 }
 
-bool MjcfFileReader::set_ellipsoid(const MjcfElement& element, const Vec3& radii, MjcfGeom& geom) {
-  ShapeModel& shape = geom.shape.shape;
-  const Vec3 squares = radii * radii;
-  const double volume = 4.0 / 3 * kPi * radii.x * radii.y * radii.z;
-  const Vec3 moments = volume / 5 * Vec3(squares.y + squares.z, squares.x + squares.z, squares.x + squares.y);
-  geom.unit = Inertial{volume, Vec3(0), Mat3(moments.x, 0, 0, 0, moments.y, 0, 0, 0, moments.z)};
-  const std::string key = fmt::format("{:a}|{:a}|{:a}", radii.x, radii.y, radii.z);
-  std::shared_ptr<const MeshModel>& mesh = ellipsoids_[key];
-  if (mesh == nullptr && ellipsoids_.size() <= kMaxEllipsoids) {
-    std::vector<Vec3> points = sphere_points(2);
-    for (Vec3& p : points) p *= radii;
-    if (const auto made = mesh_of_points(points, {}, "ellipsoid")) mesh = *made;
-  }
-  if (mesh == nullptr) {
-    reader_.unsupported(element, "<geom type='ellipsoid'> ignored: there are too many of them, or it is too thin",
-                        "Use spheres or capsules.", Severity::error);
-    return false;
-  }
-  reader_.unsupported(element, "<geom type='ellipsoid'> is approximated by a mesh of 66 points; its mass is exact",
-                      "Nothing to do.");
-  shape.kind = ShapeKind::mesh;
-  shape.mesh = mesh;
-  return true;
-}
-
 void MjcfFileReader::read_color(const MjcfElement& element, MjcfClass cls, MjcfGeom& geom) {
   if (const std::string* const name = reader_.text(element, cls, "material")) {
     const auto found = materials_.find(*name);
     if (found != materials_.end()) {
-      geom.shape.color = found->second.color;
-      geom.shape.alpha = found->second.alpha;
+      geom.shape.material.color = found->second.color;
+      geom.shape.material.alpha = found->second.alpha;
+      const auto texture = textures_.find(found->second.texture);
+      if (texture != textures_.end()) geom.shape.material.texture_uri = texture->second;
     } else {
       reader_.unsupported(
           element, fmt::format("material '{}' is not defined; the default color is used", printable_excerpt(*name)),
@@ -227,9 +183,9 @@ void MjcfFileReader::read_color(const MjcfElement& element, MjcfClass cls, MjcfG
     }
   }
   if (const auto rgba = reader_.numbers(element, cls, "rgba", 4, 4); !rgba.empty()) {
-    geom.shape.color =
+    geom.shape.material.color =
         Vec3(std::clamp(rgba[0], 0.0, 1.0), std::clamp(rgba[1], 0.0, 1.0), std::clamp(rgba[2], 0.0, 1.0));
-    geom.shape.alpha = std::clamp(rgba[3], 0.0, 1.0);
+    geom.shape.material.alpha = std::clamp(rgba[3], 0.0, 1.0);
   }
 }
 

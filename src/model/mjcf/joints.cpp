@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kMaxJointsOfBody = 6;
 constexpr double kMaxForce = 1e9;
 constexpr double kMaxStiffness = 1e6;
+constexpr double kMaxArmature = 1e6;
 constexpr double kMaxBound = 1e4;  // limits beyond this mean none
 
 std::optional<JointType> joint_type_of(std::string_view text) {
@@ -113,8 +114,9 @@ void MjcfFileReader::read_spring(const MjcfElement& element, MjcfClass cls, doub
     return;
   }
   const double unit = joint.type == JointType::revolute && reader_.compiler.degrees ? kPi / 180 : 1;
-  joint.stiffness = std::min(stiffness, kMaxStiffness);
-  joint.rest = std::clamp(reader_.number(element, cls, "springref", 0) * unit - joint.reference, -kMaxBound, kMaxBound);
+  joint.spring.stiffness = std::min(stiffness, kMaxStiffness);
+  joint.spring.rest =
+      std::clamp(reader_.number(element, cls, "springref", 0) * unit - joint.reference, -kMaxBound, kMaxBound);
 }
 
 void MjcfFileReader::read_passive_forces(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
@@ -130,8 +132,10 @@ void MjcfFileReader::read_passive_forces(const MjcfElement& element, MjcfClass c
     reader_.unsupported(element, "<joint springdamper> ignored: the joint has no spring",
                         "Set the motor's mode to \"spring\" in the scene.", Severity::warning);
   }
-  if (reader_.number(element, cls, "armature", 0) != 0) {
-    reader_.unsupported(element, "<joint armature> ignored: rotors have no inertia", "Nothing to do.");
+  joint.armature = std::clamp(reader_.number(element, cls, "armature", 0), 0.0, kMaxArmature);
+  if (joint.type == JointType::spherical && joint.armature > 0) {
+    reader_.unsupported(element, "armature of a ball joint ignored: it moves as if its rotors had no inertia",
+                        "Nothing to do.");
   }
   if (reader_.limited(element, cls, "actuatorfrclimited", "actuatorfrcrange")) {
     const std::vector<double> range = reader_.numbers(element, cls, "actuatorfrcrange", 2, 2);

@@ -14,7 +14,7 @@ namespace limber::model {
 namespace {
 
 Inertial geom_inertial(const MjcfGeom& geom) {
-  const Inertial unit = geom.unit ? *geom.unit : unit_inertial_of(geom.shape.shape);
+  const Inertial unit = unit_inertial_of(geom.shape.shape);
   if (unit.mass <= 0) return {};
   const double density = geom.mass ? *geom.mass / unit.mass : geom.density;
   return transformed(scaled(unit, density), geom.shape.origin.pose());

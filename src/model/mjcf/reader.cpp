@@ -2,6 +2,7 @@
 #include "model/mjcf/reader.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -14,6 +15,9 @@ namespace limber::model {
 
 namespace {
 
+constexpr std::array<std::string_view, 20> kDefaultElements{
+    "mesh",   "material", "joint", "freejoint", "geom",     "site",        "camera", "light",    "pair",   "equality",
+    "tendon", "general",  "motor", "position",  "velocity", "intvelocity", "damper", "cylinder", "muscle", "adhesion"};
 constexpr std::size_t kMaxClasses = 10'000;
 constexpr std::size_t kMaxDeferred = 250;
 constexpr double kMaxNumber = 1e12;
@@ -78,6 +82,11 @@ void MjcfReader::add_class(const MjcfElement& element, std::optional<MjcfClass> 
     if (child.name == "default") {
       add_class(child, index);
     } else {
+      if (std::find(kDefaultElements.begin(), kDefaultElements.end(), child.name) == kDefaultElements.end()) {
+        unknown(child, fmt::format("<{}> in <default> ignored: it has no defaults", printable_excerpt(child.name)),
+                kDefaultElements, "Remove it.");
+        continue;
+      }
       classes_[index].elements.push_back(&child);
       check_attributes(child);
     }
@@ -271,6 +280,15 @@ void MjcfReader::unsupported(const MjcfElement& element, const std::string& text
   entry.first = &element;
   entry.fix = fix;
   entry.severity = severity;
+}
+
+void MjcfReader::unknown(const MjcfElement& element, const std::string& text, std::span<const std::string_view> known,
+                         const std::string& fix, Severity severity) {
+  if (count_unsupported(text)) return;
+  const std::string_view suggestion = nearest_name(element.name, known);
+  const bool misspelled = !suggestion.empty() && suggestion != element.name;
+  unsupported(element, text, misspelled ? fmt::format("Did you mean <{}>?", suggestion) : fix,
+              misspelled ? Severity::warning : severity);
 }
 
 void MjcfReader::report_deferred() {

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -31,6 +32,8 @@ class MjcfReader {
 
   /// The text of an attribute, of the element itself or of its class; null if neither has it.
   const std::string* text(const MjcfElement& element, MjcfClass cls, std::string_view attribute) const;
+  /// The text of an attribute in the defaults of a kind of element; null if there is none.
+  const std::string* default_text(std::string_view tag, MjcfClass cls, std::string_view attribute) const;
   /// The numbers of an attribute: empty if it is absent, or invalid (which is reported).
   std::vector<double> numbers(const MjcfElement& element, MjcfClass cls, const char* attribute, std::size_t min_count,
                               std::size_t max_count);
@@ -52,13 +55,18 @@ class MjcfReader {
   /// Counts an effect that is not supported; report_deferred() reports each once, with the number of places.
   void unsupported(const MjcfElement& element, const std::string& text, const std::string& fix,
                    Severity severity = Severity::note);
+  /// Reports an element with an unknown name, with a suggestion among `known`. `text`: what it is not, or its effect.
+  void unknown(const MjcfElement& element, const std::string& text, std::span<const std::string_view> known,
+               const std::string& fix, Severity severity = Severity::warning);
   /// True if unsupported() has this text already, which is then counted, or can't add another one: then its fix needs
   /// no search for a similar name.
   bool count_unsupported(const std::string& text);
   /// False if the list of problems is full.
   bool can_report() const { return problems_.list().size() < Problems::kMaxProblems; }
   /// Counts the attributes of an element that have no effect.
-  void check_attributes(const MjcfElement& element);
+  void check_attributes(const MjcfElement& element) { check_attributes(element, element.name); }
+  /// `kind`: the entry of the list of elements, where it isn't the element's name.
+  void check_attributes(const MjcfElement& element, std::string_view kind);
   void report_deferred();
 
   /// The line in the model's file: for an included element, that of the <include>.
@@ -90,7 +98,6 @@ class MjcfReader {
 
   void report_ignored();
   void add_class(const MjcfElement& element, std::optional<MjcfClass> parent);
-  const std::string* default_text(std::string_view tag, MjcfClass cls, std::string_view attribute) const;
   std::string prefix(const MjcfElement& element) const;
   Quat euler(const std::vector<double>& angles) const;
 

@@ -1,4 +1,4 @@
-// Actuators, contact exclusions, equalities, keyframes, and sections without effect.
+// Actuators, contact exclusions, keyframes, and sections without effect.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,9 +15,31 @@ namespace limber::model {
 namespace {
 
 constexpr double kMaxEffort = 1e9;
+constexpr double kMaxGain = 1e6;
 constexpr std::array<std::string_view, 11> kActuators{"motor",    "position", "velocity", "intvelocity",
                                                       "damper",   "general",  "cylinder", "muscle",
                                                       "adhesion", "plugin",   "dcmotor"};
+
+// The gains of an actuator with feedback of the position: force = stiffness·(target - value) - damping·speed.
+void set_gains(MjcfReader& reader, const MjcfElement& element, MjcfClass cls, double gear, MjcfJoint& joint) {
+  double stiffness = 0, damping = 0;
+  if (element.name == "position") {
+    stiffness = reader.number(element, cls, "kp", 1);
+    damping = reader.number(element, cls, "kv", 0);
+  } else if (const std::string* const bias = reader.text(element, cls, "biastype");
+             bias != nullptr && *bias == "affine") {
+    const std::vector<double> numbers = reader.numbers(element, cls, "biasprm", 1, 10);
+    if (numbers.size() > 1) stiffness = -numbers[1];
+    if (numbers.size() > 2) damping = -numbers[2];
+  }
+  if (stiffness <= 0 || gear == 0) return;
+  joint.gains = {std::min(stiffness * gear * gear, kMaxGain), -joint.reference,
+                 std::clamp(damping * gear * gear, 0.0, kMaxGain)};
+  reader.unsupported(
+      element,
+      fmt::format("<{}>: its servo uses its whole effort; its gains are those of the motor's spring", element.name),
+      "Set motor.mode = \"spring\" to use the gains.");
+}
 
 double largest_of(const std::vector<double>& range) {
   double largest = 0;
@@ -25,14 +47,13 @@ double largest_of(const std::vector<double>& range) {
   return largest;
 }
 
-bool is_single_axis(JointType type) { return type == JointType::revolute || type == JointType::prismatic; }
-
 }  // namespace
 
 void MjcfFileReader::index_names() {
   constexpr std::size_t kMaxSuggestions = 200;
   for (std::size_t i = 0; i < file_.bodies.size(); ++i) {
     MjcfBody& b = file_.bodies[i];
+    for (const auto& [name, pose] : b.sites) sites_.try_emplace(name, Site{static_cast<int>(i), pose});
     if (!b.name.empty()) body_index_.try_emplace(b.name, static_cast<int>(i));
     for (MjcfJoint& joint : b.joints) {
       if (joint.name.empty()) continue;
@@ -74,13 +95,23 @@ MjcfJoint* MjcfFileReader::joint_named(const MjcfElement& element, const char* a
 
 void MjcfFileReader::read_actuator(const MjcfElement& element) {
   if (std::find(kActuators.begin(), kActuators.end(), element.name) == kActuators.end()) {
-    reader_.unsupported(
-        element, fmt::format("<{}> in <actuator> ignored: it is not an actuator", printable_excerpt(element.name)),
-        "Use motor, position, velocity or general.", Severity::warning);
+    reader_.unknown(element,
+                    fmt::format("<{}> in <actuator> ignored: it is not an actuator", printable_excerpt(element.name)),
+                    kActuators, "Use motor, position, velocity or general.");
     return;
   }
   reader_.check_attributes(element);
   const char* const attribute = element.attribute("joint") != nullptr ? "joint" : "jointinparent";
+  if (const std::string* const tendon = element.attribute("tendon")) {
+    const auto found = fixed_tendons_.find(*tendon);
+    if (found != fixed_tendons_.end()) {
+      for (const TendonJoint& pulled : found->second) {
+        pulled.joint->driven = true;
+        limit_joint(element, reader_.class_of(element, 0), std::abs(pulled.factor), *pulled.joint);
+      }
+      return;
+    }
+  }
   if (element.attribute(attribute) == nullptr) {
     reader_.unsupported(element, fmt::format("<{}> that drives no joint ignored: it has no force", element.name),
                         "Drive a joint: joint=\"…\".", Severity::warning);
@@ -89,12 +120,13 @@ void MjcfFileReader::read_actuator(const MjcfElement& element) {
   MjcfJoint* const joint = joint_named(element, attribute, "drives");
   if (joint == nullptr) return;
   joint->driven = true;
-  limit_joint(element, reader_.class_of(element, 0), *joint);
+  limit_joint(element, reader_.class_of(element, 0), 1, *joint);
 }
 
-void MjcfFileReader::limit_joint(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
+// `lever`: factor of the joint in the actuator's tendon
+void MjcfFileReader::limit_joint(const MjcfElement& element, MjcfClass cls, double lever, MjcfJoint& joint) {
   const std::vector<double> gears = reader_.numbers(element, cls, "gear", 1, 6);
-  const double gear = gears.empty() ? 1 : std::abs(gears[0]);
+  const double gear = (gears.empty() ? 1 : std::abs(gears[0])) * lever;
   const std::vector<double> force = reader_.limited(element, cls, "forcelimited", "forcerange")
                                         ? reader_.numbers(element, cls, "forcerange", 2, 2)
                                         : std::vector<double>();
@@ -108,6 +140,7 @@ void MjcfFileReader::limit_joint(const MjcfElement& element, MjcfClass cls, Mjcf
     const std::vector<double> gain = reader_.numbers(element, cls, "gainprm", 1, 10);
     effort = largest_of(control) * gear * (general_motor && !gain.empty() ? std::abs(gain[0]) : 1);
   }
+  set_gains(reader_, element, cls, gear, joint);
   // a joint with several actuators gets the sum of their forces
   if (effort > 0) joint.effort = std::min(joint.effort + effort, kMaxEffort);
   if (element.name == "velocity" && !control.empty() && gear > 0)
@@ -118,45 +151,17 @@ void MjcfFileReader::read_contacts(const MjcfElement& section) {
   for (const MjcfElement& e : section.children) {
     reader_.check_attributes(e);
     if (e.name != "exclude") {
-      reader_.unsupported(
+      constexpr std::array<std::string_view, 2> kContacts{"exclude", "pair"};
+      reader_.unknown(
           e,
           fmt::format("<{}> in <contact> ignored: contacts follow the masks of the geoms", printable_excerpt(e.name)),
-          "Set collision groups in the scene.");
+          kContacts, "Set collision groups in the scene.", Severity::note);
       continue;
     }
     const int a = body_named(e, "body1");
     const int b = body_named(e, "body2");
     if (a >= 0 && b >= 0 && a != b) file_.exclusions.emplace_back(a, b);
   }
-}
-
-void MjcfFileReader::read_equality(const MjcfElement& element) {
-  if (const std::string* active = element.attribute("active"); active != nullptr && *active == "false") return;
-  if (element.name != "joint") {
-    reader_.unsupported(element,
-                        fmt::format("<{}> in <equality> ignored: the loop stays open", printable_excerpt(element.name)),
-                        "Add the joint in the scene.", Severity::warning);
-    return;
-  }
-  MjcfJoint* const follower = joint_named(element, "joint1", "couples");
-  MjcfJoint* const leader = joint_named(element, "joint2", "couples");
-  if (follower == nullptr || leader == nullptr || follower == leader || !is_single_axis(follower->type) ||
-      !is_single_axis(leader->type)) {
-    if (follower != nullptr) {
-      reader_.unsupported(element, "<joint> in <equality> ignored: it names no two joints with one axis each",
-                          "Name two hinges or slides.", Severity::warning);
-    }
-    return;
-  }
-  std::vector<double> polynomial = reader_.numbers(element, 0, "polycoef", 1, 5);
-  if (polynomial.empty()) polynomial = {0, 1, 0, 0, 0};
-  polynomial.resize(5, 0);
-  if (polynomial[2] != 0 || polynomial[3] != 0 || polynomial[4] != 0) {
-    reader_.unsupported(element, "<joint polycoef> in <equality>: only the linear part has an effect",
-                        "Drive the joint in the scene.", Severity::warning);
-  }
-  follower->mimic = UrdfMimic{reader_.line_of(element), leader->name, std::clamp(polynomial[1], -1e6, 1e6),
-                              std::clamp(polynomial[0], -1e6, 1e6)};
 }
 
 void MjcfFileReader::read_keyframes(const MjcfElement& section) {
@@ -206,14 +211,17 @@ void MjcfFileReader::report_section(const MjcfElement& section) {
   if (section.name == "option") {
     reader_.unsupported(section, "<option> ignored: the scene sets gravity and time step",
                         "Set sim.gravity and sim.timestep in the scene.");
-  } else if (section.name == "tendon" || section.name == "sensor") {
+  } else if (section.name == "sensor") {
     for (const MjcfElement& e : section.children) {
-      reader_.unsupported(
-          e, fmt::format("<{}> in <{}> ignored: it is not supported", printable_excerpt(e.name), section.name),
-          section.name == "sensor" ? "Read the properties of parts and joints instead."
-                                   : "Use gears or springs in the scene.",
-          section.name == "sensor" ? Severity::note : Severity::warning);
+      reader_.unsupported(e, fmt::format("<{}> in <sensor> ignored: nothing is measured", printable_excerpt(e.name)),
+                          "Read the properties of parts and joints instead.");
     }
+  } else if (section.name == "visual" || section.name == "statistic") {
+    reader_.unsupported(section, fmt::format("<{}> ignored: the scene sets the view", section.name),
+                        "Set sim.camera in the scene.");
+  } else if (section.name == "custom") {
+    reader_.unsupported(section, "<custom> ignored: its numbers and texts have no meaning here",
+                        "Keep them in the scene.");
   } else if (section.name == "deformable" || section.name == "extension") {
     reader_.unsupported(section, fmt::format("<{}> ignored: it is not supported", section.name),
                         "Remove it, or use rigid bodies.", Severity::warning);

@@ -7,27 +7,21 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 
 namespace limber::model {
 
 namespace {
 
-/// A rotation that maps +z to the axis: identity for +z, half a turn about x for -z.
-Quat rotation_to_axis(const Vec3& axis) {
-  if (axis.z >= 1 - 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_identity();
-  if (axis.z <= -1 + 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_xyzw(1, 0, 0, 0);
-  const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
-  const Vec3 y = normalized(glm::cross(axis, helper));
-  return glm::normalize(glm::quat_cast(Mat3(glm::cross(y, axis), y, axis)));
-}
-
 PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
   PlacedShape out;
   out.shape = from.shape;
   out.origin = offset * from.origin.pose();
-  out.color = from.color;
-  out.alpha = from.alpha;
+  // a texture replaces the color, except its alpha
+  if (out.shape.texture == nullptr) out.color = from.material.color;
+  out.alpha = from.material.alpha;
+  out.shape.mesh_colors = from.material.keeps_mesh_colors() && out.shape.texture == nullptr;
   if (!collides || !from.shape.mesh || !from.shape.mesh->primitive) return out;
   // a mesh recognized as a box, sphere or capsule collides as that primitive, at the primitive's pose
   const PlacedShape& primitive = *from.shape.mesh->primitive;
@@ -60,24 +54,72 @@ JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
   out.limited = from.limited;
   out.lower = from.lower;
   out.upper = from.upper;
-  out.velocity = from.velocity;
+  out.velocity = from.velocity.value_or(0);
   out.damping = from.damping;
   out.friction = from.friction;
-  out.stiffness = from.stiffness;
-  out.rest = from.rest;
+  out.armature = from.armature;
+  out.spring = from.spring;
   out.start = from.start;
   out.driven = from.driven;
-  const bool has_motor =
-      from.type == JointType::revolute || from.type == JointType::continuous || from.type == JointType::prismatic;
-  if (from.effort > 0) {
-    out.effort = from.effort;
-  } else if (has_motor) {
-    build.problems.note(from.line,
-                        fmt::format("joint '{}': effort is 0 or absent; using {:g} {}", printable(from.name),
-                                    out.effort, from.type == JointType::prismatic ? "N" : "N·m"),
+  if (from.effort.value_or(0) > 0) out.effort = *from.effort;
+  return out;
+}
+
+/// Joints that get the same motor, for a note.
+struct MotorGroup {
+  std::size_t count = 0;
+  const UrdfJoint* first = nullptr;
+
+  void add(const UrdfJoint& joint) {
+    if (count++ == 0) first = &joint;
+  }
+  /// "2 joints have effort 0, first 'a'"
+  std::string text(const char* what) const {
+    return fmt::format("{} {}, first '{}'", counted(count, "joint has", "joints have"), what, printable(first->name));
+  }
+};
+
+bool has_motor(const UrdfJoint& joint) {
+  return joint.type == JointType::revolute || joint.type == JointType::continuous || joint.type == JointType::prismatic;
+}
+
+void report_motors(UrdfBuildContext& build, const MotorGroup& passive, const MotorGroup& without,
+                   const MotorGroup& unlimited) {
+  if (passive.count > 0) {
+    build.problems.note(passive.first->line,
+                        fmt::format("{}, and {} no motor, because other joints have effort", passive.text("effort 0"),
+                                    passive.count == 1 ? "gets" : "get"),
+                        "Load with motors = \"servo\" to drive all joints.");
+  }
+  if (without.count > 0) {
+    build.problems.note(without.first->line,
+                        fmt::format("{}; {} a servo of {:g} N·m or N", without.text("no effort"),
+                                    without.count == 1 ? "it gets" : "each gets", JointModel().effort),
                         "Write <limit effort=\"…\"/> with the motor's largest torque or force.");
   }
-  return out;
+  if (unlimited.count > 0) {
+    build.problems.note(unlimited.first->line, unlimited.text("velocity 0") + ", which means no limit",
+                        "Write <limit velocity=\"…\"/> in rad/s or m/s.");
+  }
+}
+
+/// Decides which joints without effort have a motor: a written effort of 0 means none, as for wheels and casters, if
+/// another joint has effort. All others get the default effort.
+void choose_motors(UrdfBuildContext& build) {
+  bool has_effort = false;
+  for (std::size_t node = 1; node < build.tree.size(); ++node)
+    has_effort = has_effort || build.joint(node).effort.value_or(0) > 0;
+  MotorGroup passive, without, unlimited;
+  for (std::size_t node = 1; node < build.tree.size(); ++node) {
+    const UrdfJoint& from = build.joint(node);
+    if (!has_motor(from) || build.body_joint[node] < 0) continue;
+    if (from.velocity == 0) unlimited.add(from);
+    if (from.effort.value_or(0) > 0) continue;
+    const bool is_passive = has_effort && from.effort.has_value();
+    if (is_passive) build.model.joints[static_cast<std::size_t>(build.body_joint[node])].driven = false;
+    (is_passive ? passive : without).add(from);
+  }
+  report_motors(build, passive, without, unlimited);
 }
 
 // frames on links, and pairs of links that don't collide
@@ -109,6 +151,7 @@ bool is_merged(UrdfBuildContext& build, std::size_t node) {
   if (build.tree[node].joint < 0 || build.joint(node).type != JointType::fixed) return false;
   if (!build.options.keep_fixed) return true;
   const UrdfLink& link = build.link(node);
+  if (is_marker(link)) return true;
   if (link.inertial && link.inertial->mass > 0) return false;
   build.problems.note(
       link.line,
@@ -118,6 +161,19 @@ bool is_merged(UrdfBuildContext& build, std::size_t node) {
 }
 
 }  // namespace
+
+Quat rotation_to_axis(const Vec3& axis) {
+  if (axis.z >= 1 - 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_identity();
+  if (axis.z <= -1 + 1e-15 && fixed::hypot(axis.x, axis.y) < 1e-12) return quat_xyzw(1, 0, 0, 0);
+  const Vec3 helper = std::abs(axis.x) < 0.7 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
+  const Vec3 y = normalized(glm::cross(axis, helper));
+  return glm::normalize(glm::quat_cast(Mat3(glm::cross(y, axis), y, axis)));
+}
+
+bool is_marker(const UrdfLink& link) {
+  return link.inertial && link.inertial->mass > 0 && link.inertial->mass <= kMaxMarkerMass && link.collisions.empty() &&
+         link.visuals.empty();
+}
 
 void build_structure(UrdfBuildContext& build) {
   const std::size_t count = build.tree.size();
@@ -149,6 +205,7 @@ void build_structure(UrdfBuildContext& build) {
     }
     add_shapes(build, node);
   }
+  choose_motors(build);
   add_frames_and_exclusions(build);
 }
 
@@ -156,6 +213,7 @@ Result<void> build_body(UrdfBuildContext& build) {
   build_structure(build);
   build_masses(build);
   if (Result<void> posed = build_poses(build); !posed) return posed;
+  build_loops(build);
   build_collisions(build);
   return {};
 }

@@ -29,6 +29,13 @@ struct UrdfBuildContext {
   const UrdfJoint& joint(std::size_t node) const { return file.joints[static_cast<std::size_t>(tree[node].joint)]; }
 };
 
+/// A rotation that maps +z to a unit axis: identity for +z, half a turn about x for -z. [any]
+Quat rotation_to_axis(const Vec3& axis);
+
+inline constexpr double kMaxMarkerMass = 1e-7;  ///< kg
+/// True for a link without shapes whose mass is too small to be meant: it only marks a frame. [any]
+bool is_marker(const UrdfLink& link);
+
 /// Runs all steps. The error is that of build_poses(). [any]
 Result<void> build_body(UrdfBuildContext& build);
 
@@ -39,6 +46,9 @@ void build_masses(UrdfBuildContext& build);
 /// Resolves mimic joints, sets start values, home and start poses, and fills `file_links` and `file_joints`
 /// (pose.cpp). The error names an unknown joint or an invalid value in `options.pose`. [any]
 Result<void> build_poses(UrdfBuildContext& build);
+/// Adds the joints that close loops: those of the file, and those between closing frames (loops.cpp). The start poses
+/// must be set already. [any]
+void build_loops(UrdfBuildContext& build);
 /// Finds pairs of links that overlap at the home pose, and reports links without collision shapes and hulls that fill
 /// hollows of their mesh (collisions.cpp). [any]
 void build_collisions(UrdfBuildContext& build);

@@ -22,9 +22,9 @@ using Element = tinyxml2::XMLElement;
 
 constexpr std::size_t kMaxShownName = 40;
 
-constexpr std::array<std::string_view, 16> kElements{
-    "link",  "joint", "material", "inertial", "visual", "collision", "origin",  "parent",
-    "child", "axis",  "limit",    "dynamics", "mimic",  "geometry",  "inertia", "mass"};
+constexpr std::array<std::string_view, 17> kElements{
+    "limber:loop", "link", "joint", "material", "inertial", "visual",   "collision", "origin", "parent",
+    "child",       "axis", "limit", "dynamics", "mimic",    "geometry", "inertia",   "mass"};
 
 class UrdfChecker {
  public:
@@ -40,6 +40,8 @@ class UrdfChecker {
         read_joint(*e);
       } else if (kind == "material") {
         read_material(*e);
+      } else if (kind == "limber:loop") {
+        read_loop(*e, robot);
       } else {
         if (kind == "gazebo") read_gazebo(*e);
         ++unused_.try_emplace(std::string(kind), 0, e->GetLineNum()).first->second.first;
@@ -140,6 +142,16 @@ class UrdfChecker {
     file_.joints.push_back(std::move(*read));
   }
 
+  void read_loop(const Element& element, const Element& robot) {
+    if (!robot.Attribute("xmlns:limber") && file_.loops.empty()) {
+      problems_.note(element.GetLineNum(), "<limber:loop> is used without xmlns:limber; some readers reject the file",
+                     "Write <robot … xmlns:limber=\"https://limber/urdf\">.");
+    }
+    std::optional<UrdfLoop> read = reader_.loop(element);
+    count_unused(element, {"parent", "child", "axis", "limit", "dynamics"});
+    if (read) file_.loops.push_back(std::move(*read));
+  }
+
   // a second joint of the same name is renamed, not dropped, because its child links would be lost
   void make_unique(UrdfJoint& joint) {
     const std::string base = joint.name;
@@ -161,13 +173,12 @@ class UrdfChecker {
     }
     reader_.check_attributes(element, {"name"});
     const std::string owner = fmt::format("material '{}'", printable(name));
-    std::optional<Vec3> color;
-    double alpha = 1;
+    UrdfMaterial material;
     declared_materials_.insert(name);
-    if (!reader_.color(element, owner, color, alpha)) {
-      problems_.warning(element.GetLineNum(), owner + " has no color; ignored",
-                        "Write <color rgba=\"r g b a\"/> inside; textures are not supported.");
-    } else if (!materials_.try_emplace(name, *color, alpha).second) {
+    if (!reader_.material(element, owner, material)) {
+      problems_.warning(element.GetLineNum(), owner + " has no color and no texture; ignored",
+                        "Write <color rgba=\"r g b a\"/> or <texture filename=\"…\"/> inside.");
+    } else if (!materials_.try_emplace(name, material).second) {
       problems_.warning(element.GetLineNum(), owner + " is declared twice; using the first",
                         "Give every material a name of its own.");
     }
@@ -178,17 +189,18 @@ class UrdfChecker {
     std::map<std::string, std::pair<int, int>> undefined;  // number of visuals, line of the first
     for (const UrdfLink& link : file_.links) {
       for (const UrdfShape& shape : link.visuals) {
-        if (shape.color && !shape.material.empty()) materials_.try_emplace(shape.material, *shape.color, shape.alpha);
+        if (!shape.material.empty() && !shape.material_name.empty())
+          materials_.try_emplace(shape.material_name, shape.material);
       }
     }
     for (UrdfLink& link : file_.links) {
       for (UrdfShape& shape : link.visuals) {
-        if (shape.color || shape.material.empty()) continue;
-        const auto found = materials_.find(shape.material);
+        if (!shape.material.empty() || shape.material_name.empty()) continue;
+        const auto found = materials_.find(shape.material_name);
         if (found != materials_.end()) {
-          std::tie(shape.color, shape.alpha) = found->second;
-        } else if (!declared_materials_.contains(shape.material)) {
-          ++undefined.try_emplace(shape.material, 0, shape.line).first->second.first;
+          shape.material = found->second;
+        } else if (!declared_materials_.contains(shape.material_name)) {
+          ++undefined.try_emplace(shape.material_name, 0, shape.line).first->second.first;
         }
       }
     }
@@ -283,7 +295,7 @@ class UrdfChecker {
   std::set<std::string, std::less<>> link_names_;
   std::set<std::string, std::less<>> joint_names_;
   std::map<std::string, int> next_suffix_;
-  std::map<std::string, std::pair<Vec3, double>> materials_;
+  std::map<std::string, UrdfMaterial> materials_;
   std::set<std::string, std::less<>> declared_materials_;  // including those reported for having no color
   std::vector<SelfCollision> self_collisions_;
   std::map<std::string, std::pair<int, int>> unused_;  // element name -> count, first line

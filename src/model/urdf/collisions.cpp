@@ -63,6 +63,7 @@ void check_overlaps(UrdfBuildContext& build) {
   BodyModel& model = build.model;
   std::set<std::pair<int, int>> connected;
   for (const JointModel& joint : model.joints) connected.insert(std::minmax(joint.parent, joint.child));
+  for (const JointModel& loop : model.loops) connected.insert(std::minmax(loop.parent, loop.child));
   connected.insert(model.exclusions.begin(), model.exclusions.end());
   std::vector<OverlapPart> parts;
   for (const LinkModel& link : model.links) parts.push_back({link.collisions, link.home});

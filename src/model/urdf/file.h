@@ -27,6 +27,17 @@ struct UrdfInertial {
   Mat3 tensor{0};  ///< As written: along the inertial origin's axes.
 };
 
+/// The color and texture of a <material>.
+struct UrdfMaterial {
+  std::optional<Vec3> color;  ///< r g b 0..1.
+  double alpha = 1;
+  std::string texture_uri;  ///< Names the image of the texture, which is loaded later; empty: none.
+
+  bool empty() const { return !color && texture_uri.empty(); }
+  /// True without a color, and with white, which many files give to textured meshes.
+  bool keeps_mesh_colors() const { return !color || *color == Vec3(1); }
+};
+
 /// A <visual> or <collision> element. For `shape.kind` mesh, `mesh_uri` names the file, which is loaded later.
 struct UrdfShape {
   int line = 0;
@@ -34,9 +45,8 @@ struct UrdfShape {
   ShapeModel shape;
   std::string mesh_uri;
   Vec3 mesh_scale{1, 1, 1};
-  std::string material;  ///< Name of the material that provides the color if `color` is empty.
-  std::optional<Vec3> color;
-  double alpha = 1;
+  std::string material_name;  ///< Names the material of the file to use if `material` is empty.
+  UrdfMaterial material;
 };
 
 struct UrdfLink {
@@ -69,15 +79,31 @@ struct UrdfJoint {
   bool limited = false;
   double lower = 0;
   double upper = 0;
-  double effort = 0;    ///< As written; 0: absent.
-  double velocity = 0;  ///< As written; 0: absent.
+  std::optional<double> effort;    ///< As written; empty: absent.
+  std::optional<double> velocity;  ///< As written; 0 or empty: no limit.
   double damping = 0;
   double friction = 0;
-  double stiffness = 0;  ///< MJCF: of a spring, N·m/rad or N/m; 0: none.
-  double rest = 0;       ///< MJCF: value at which the spring is at rest.
-  double start = 0;      ///< MJCF: value at the start, from a keyframe.
-  bool driven = true;    ///< MJCF: false if the joint has no actuator.
+  double armature = 0;  ///< MJCF: inertia of the rotor, kg·m² or kg.
+  SpringModel spring;   ///< MJCF
+  double start = 0;     ///< MJCF: value at the start, from a keyframe.
+  bool driven = true;   ///< MJCF: false if the joint has no actuator.
   std::optional<UrdfMimic> mimic;
+};
+
+/// A joint that closes a loop: <limber:loop>, or <connect> and <weld> of MJCF.
+struct UrdfLoop {
+  std::string name;  ///< Empty: made of the links' names.
+  int line = 0;
+  JointType type = JointType::revolute;
+  std::string parent;
+  std::string child;
+  Pose frame_in_parent;  ///< Of the joint; the loop is closed where both frames coincide.
+  Pose frame_in_child;
+  Vec3 axis{1, 0, 0};  ///< Unit, in the joint's frame.
+  bool limited = false;
+  double lower = 0;
+  double upper = 0;
+  double friction = 0;
 };
 
 /// A named frame on a link, such as a <site> of MJCF.
@@ -91,6 +117,7 @@ struct UrdfFile {
   std::string name;
   std::vector<UrdfLink> links;
   std::vector<UrdfJoint> joints;
+  std::vector<UrdfLoop> loops;
   // MJCF only
   std::vector<UrdfFrame> frames;
   std::vector<std::pair<int, int>> exclusions;  ///< Pairs of links that don't collide; indices into `links`.

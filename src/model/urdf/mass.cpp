@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "base/plural.h"
 #include "base/text.h"
 #include "model/mesh/mass_properties.h"
 #include "model/urdf/build.h"
@@ -108,7 +109,10 @@ class MassBuilder {
       const UrdfLink& link = build.link(node);
       if (lines_[at] == 0) lines_[at] = link.line;
       if (link.connector) connectors_[at] = true;
-      if (link.inertial && link.inertial->mass > 0) {
+      const bool merged = node > 0 && build.body_joint[node] < 0;
+      if (merged && is_marker(link)) {
+        if (markers_++ == 0) first_marker_ = node;
+      } else if (link.inertial && link.inertial->mass > 0) {
         parts_[at].push_back(transformed(declared_inertial(build, link), build.offset[node]));
         if (node == 0) root_has_mass_ = true;
       }
@@ -116,6 +120,7 @@ class MassBuilder {
   }
 
   void run() {
+    report_markers();
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       LinkModel& link = build_.model.links[i];
       link.inertial = combined(parts_[i]);
@@ -140,6 +145,16 @@ class MassBuilder {
   }
 
  private:
+  void report_markers() {
+    if (markers_ == 0) return;
+    const UrdfLink& first = build_.link(first_marker_);
+    build_.problems.note(first.line,
+                         fmt::format("{} of {:g} kg or less, first '{}', only {} a frame; {} mass is ignored",
+                                     counted(markers_, "link"), kMaxMarkerMass, printable(first.name),
+                                     plural(markers_, "marks", "mark"), plural(markers_, "its", "their")),
+                         "Nothing to do; scripts find the frames with body:link(name).");
+  }
+
   bool is_root_fixed() const {
     return build_.options.fixed_base.value_or(build_.file.fixed_root.value_or(!root_has_mass_));
   }
@@ -182,6 +197,8 @@ class MassBuilder {
   std::vector<int> lines_;
   std::vector<bool> connectors_;  // by model link
   bool root_has_mass_ = false;
+  std::size_t markers_ = 0;  // links that only mark frames
+  std::size_t first_marker_ = 0;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,9 +24,9 @@ class MeshLoader {
 
   /// Loads the meshes used by the tree's links; removes and reports shapes with a mesh that can't be loaded.
   void run(UrdfFile& file, const std::vector<UrdfNode>& tree);
-  /// Loads the mesh of a shape, if it has one; reports a mesh that can't be loaded as one of `owner`, and returns
-  /// false.
-  bool load(UrdfShape& shape, const std::string& owner);
+  /// Loads the mesh and the texture of a shape, if it has them; reports a mesh that can't be loaded as one of `owner`,
+  /// and returns false. If the shape is `drawn`, reports what is not drawn of its mesh and texture, once per file.
+  bool load(UrdfShape& shape, const std::string& owner, bool drawn = true);
   /// Appends the mesh files, with their hashes and URIs, to the model's lists.
   void list_files(BodyModel& model) const;
   /// Hash of the meshes' keys and contents, continued from `start`.
@@ -34,16 +35,25 @@ class MeshLoader {
  private:
   using MeshResult = Result<std::shared_ptr<const MeshModel>>;
 
+  bool load_mesh(UrdfShape& shape, const std::string& owner);
+  void load_texture(UrdfShape& shape, const std::string& owner);
+  Result<std::shared_ptr<const Image>> read_image(const std::string& uri);
+  void report_look(const UrdfShape& shape, const MeshModel& mesh);
   const MeshResult& get(const std::string& uri, const Vec3& scale);
   MeshResult read(const std::string& uri, const Vec3& scale);
 
+  Result<std::string> find(const std::string& uri);
+
   std::string folder_;
+  std::string target_folder_;  // of the file that the model file is a symbolic link to; empty: it is none
   const ImportOptions& options_;
   MeshLibrary& meshes_;
   Problems& problems_;
   std::map<std::string, MeshResult> results_;
   std::map<std::string, std::uint64_t> file_hashes_;  // by file; 0: it could not be loaded
   std::map<std::string, std::string> paths_by_uri_;
+  std::map<std::string, Result<std::shared_ptr<const Image>>> images_;  // by URI
+  std::set<std::string> reported_;                                      // files and textures
 };
 
 }  // namespace limber::model

@@ -222,8 +222,8 @@ FileJoint file_joint(const UrdfJoint& joint) {
   out.free = joint.type != JointType::fixed && !joint.limited;
   out.lower = joint.lower;
   out.upper = joint.upper;
-  out.effort = joint.effort;
-  out.velocity = joint.velocity;
+  out.effort = joint.effort.value_or(0);
+  out.velocity = joint.velocity.value_or(0);
   return out;
 }
 

@@ -17,12 +17,14 @@ struct TypeName {
   JointType type;
   std::string_view name;
 };
-constexpr std::array<TypeName, 6> kTypeNames{{{JointType::fixed, "fixed"},
+constexpr std::array<TypeName, 8> kTypeNames{{{JointType::fixed, "fixed"},
                                               {JointType::revolute, "revolute"},
                                               {JointType::continuous, "continuous"},
                                               {JointType::prismatic, "prismatic"},
                                               {JointType::planar, "planar"},
-                                              {JointType::floating, "floating"}}};
+                                              {JointType::floating, "floating"},
+                                              {JointType::spherical, "spherical"},
+                                              {JointType::spherical, "ball"}}};
 
 constexpr NumberRange kForceRange{0, 1e9, "from 0 to 1e9 (N·m or N)"};
 constexpr NumberRange kSpeedRange{0, 1e9, "from 0 to 1e9 (rad/s or m/s)"};
@@ -62,7 +64,12 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
   check_attributes(element, {"name", "type"});
   out.type = joint_type(element, owner);
   out.origin = origin(element, owner);
-  if (out.type != JointType::fixed && out.type != JointType::floating) out.axis = axis(element, owner);
+  const bool has_axis = out.type != JointType::fixed && out.type != JointType::floating;
+  if (out.type == JointType::spherical) {
+    spherical(element, owner, out);
+  } else if (has_axis) {
+    out.axis = axis(element, owner);
+  }
   if (is_hinge_or_slide(out.type)) {
     limit(element, owner, out);
     out.mimic = mimic(element, owner);
@@ -74,6 +81,16 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
   }
   dynamics(element, owner, out);
   return out;
+}
+
+void UrdfReader::spherical(const Element& element, const std::string& owner, UrdfJoint& out) {
+  out.axis = Vec3(0, 0, 1);
+  out.driven = false;
+  const Element* found = child(element, "limit");
+  if (!found || (!found->Attribute("lower") && !found->Attribute("upper"))) return;
+  problems.warning(found->GetLineNum(),
+                   fmt::format("{}: the limits of a spherical joint are ignored; it is free", owner),
+                   "Set joint.angular_lower_limit and angular_upper_limit in the scene.");
 }
 
 void UrdfReader::dynamics(const Element& element, const std::string& owner, UrdfJoint& out) {
@@ -92,7 +109,7 @@ void UrdfReader::dynamics(const Element& element, const std::string& owner, Urdf
 
 JointType UrdfReader::joint_type(const Element& element, const std::string& owner) {
   const char* text = element.Attribute("type");
-  const std::string fix = "Use revolute, continuous, prismatic, fixed, planar or floating.";
+  const std::string fix = "Use revolute, continuous, prismatic, spherical, fixed, planar or floating.";
   if (!text) {
     problems.error(element.GetLineNum(), fmt::format("{} has no type; taken as fixed", owner), fix);
     return JointType::fixed;
@@ -145,8 +162,8 @@ void UrdfReader::limit(const Element& element, const std::string& owner, UrdfJoi
     return;
   }
   check_attributes(*found, {"lower", "upper", "effort", "velocity"});
-  out.effort = number(*found, "effort", owner, kForceRange).value_or(0);
-  out.velocity = number(*found, "velocity", owner, kSpeedRange).value_or(0);
+  out.effort = number(*found, "effort", owner, kForceRange);
+  out.velocity = number(*found, "velocity", owner, kSpeedRange);
   if (!found->Attribute("velocity")) {
     problems.note(found->GetLineNum(), fmt::format("{}: <limit> has no velocity; as fast as the effort allows", owner),
                   "Write velocity=\"…\" in rad/s or m/s.");

@@ -111,11 +111,10 @@ std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::st
   }
   if (!geometry(*kind, owner, out)) return std::nullopt;
   if (name_of(element) == "collision") check_concave(*kind, owner);
-  if (const Element* material = child(element, "material")) {
-    check_attributes(*material, {"name"});
-    if (const char* name = material->Attribute("name")) out.material = name;
-    if (const Element* texture = child(*material, "texture")) check_attributes(*texture, {"filename"});
-    color(*material, owner, out.color, out.alpha);
+  if (const Element* element_of_material = child(element, "material")) {
+    check_attributes(*element_of_material, {"name"});
+    if (const char* name = element_of_material->Attribute("name")) out.material_name = name;
+    material(*element_of_material, owner, out.material);
   }
   return out;
 }
@@ -176,7 +175,7 @@ bool UrdfReader::mesh_geometry(const Element& element, const std::string& owner,
   const char* file = element.Attribute("filename");
   if (!file || !*file) {
     problems.error(element.GetLineNum(), fmt::format("{}: <mesh> names no file; ignored", owner),
-                   "Write filename=\"…\" with the path of an STL, OBJ or DAE file.");
+                   "Write filename=\"…\" with the path of an STL, OBJ, DAE, PLY or glTF file.");
     return false;
   }
   out.mesh_uri = file;

@@ -149,9 +149,17 @@ UrdfOrigin UrdfReader::origin(const Element& parent, const std::string& owner) {
   return out;
 }
 
-bool UrdfReader::color(const Element& material, const std::string& owner, std::optional<Vec3>& color, double& alpha) {
+bool UrdfReader::material(const Element& material, const std::string& owner, UrdfMaterial& out) {
+  if (const Element* texture = child(material, "texture")) {
+    check_attributes(*texture, {"filename"});
+    if (const char* uri = texture->Attribute("filename")) out.texture_uri = trimmed(uri);
+    if (out.texture_uri.empty()) {
+      problems.warning(texture->GetLineNum(), owner + ": <texture> has no filename; ignored",
+                       "Write <texture filename=\"…\"/> with a PNG or JPEG file.");
+    }
+  }
   const Element* element = child(material, "color");
-  if (!element) return false;
+  if (!element) return !out.empty();
   check_attributes(*element, {"rgba"});
   const char* text = element->Attribute("rgba");
   std::vector<double> parts;
@@ -169,10 +177,10 @@ bool UrdfReader::color(const Element& material, const std::string& owner, std::o
         element->GetLineNum(),
         fmt::format("{}: <color rgba='{}'> is not a color; ignored", owner, printable_excerpt(text ? text : "")),
         "Write four numbers from 0 to 1: red green blue alpha.");
-    return false;
+    return !out.empty();
   }
-  color = Vec3(parts[0], parts[1], parts[2]);
-  alpha = parts.size() == 4 ? parts[3] : 1;
+  out.color = Vec3(parts[0], parts[1], parts[2]);
+  out.alpha = parts.size() == 4 ? parts[3] : 1;
   return true;
 }
 

@@ -51,13 +51,16 @@ class UrdfReader {
   /// The <origin> of an element; absent or invalid attributes are 0.
   UrdfOrigin origin(const Element& parent, const std::string& owner);
 
-  /// Reads color and alpha from <color rgba="…">; false if absent or invalid.
-  bool color(const Element& material, const std::string& owner, std::optional<Vec3>& color, double& alpha);
+  /// Reads the <color rgba="…"> and <texture filename="…"> of a material; false if it has neither, or no valid one.
+  bool material(const Element& material, const std::string& owner, UrdfMaterial& out);
 
   /// Reads a <link> with its shapes; `name` must be valid.
   UrdfLink link(const Element& element, const std::string& name);
   /// Reads a <joint>; empty if it names no parent or child link (which is reported).
   std::optional<UrdfJoint> joint(const Element& element, const std::string& name);
+
+  /// Reads a <limber:loop>; empty if it names no two links (which is reported).
+  std::optional<UrdfLoop> loop(const Element& element);
 
   /// Counts attributes of an element that are not in `known`; finish() reports them.
   void check_attributes(const Element& element, std::initializer_list<std::string_view> known);
@@ -87,6 +90,8 @@ class UrdfReader {
   bool read_length(const Element& element, const char* attribute, const std::string& owner, double& out);
   JointType joint_type(const Element& element, const std::string& owner);
   Vec3 axis(const Element& element, const std::string& owner);
+  bool loop_sides(const Element& element, const std::string& owner, UrdfLoop& out);
+  void spherical(const Element& element, const std::string& owner, UrdfJoint& out);
   void limit(const Element& element, const std::string& owner, UrdfJoint& out);
   void bounds(const Element& limit, const std::string& owner, UrdfJoint& out);
   std::optional<UrdfMimic> mimic(const Element& element, const std::string& owner);

@@ -19,13 +19,14 @@ namespace {
 constexpr int kSendBuffer = 4 << 20;  // fits a frame of a thousand bodies
 constexpr int kUnreadBuffer = 4096;   // the sending socket is never read
 // messages that this program sends unprompted
-constexpr std::array<std::string_view, 13> kNoErrorReply = {"/error",
+constexpr std::array<std::string_view, 14> kNoErrorReply = {"/error",
                                                             "/pong",
                                                             "/physics/joint/pos",
                                                             "/physics/joint/rot",
                                                             "/physics/joint/relrot",
                                                             "/physics/joint/relpos",
                                                             "/physics/contact",
+                                                            "/physics/contact/point",
                                                             "/transport/state",
                                                             "/script/error",
                                                             "/script/ok",

@@ -32,7 +32,11 @@
 ---The *own axis* of a joint is the one about or along which it moves. For most joints, `mode`, `target` and `speed` are all
 ---that you need. The other properties set each of the six axes.
 
----@page lists Lists and patterns: walk through bodies, parts, joints, motors, behaviors and gears.
+---@page sensors Sensors: contact forces, accelerometers, range finders, zones, touch, and rays.
+---A sensor belongs to a body and is mounted on one of its parts. Its readouts are properties: the panel shows and plots
+---them, and they are OSC addresses. [Sensors](../../howto/sensors.md) shows how to use them.
+
+---@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, behaviors and gears.
 ---A list such as `body.parts` has numbers from 1 to `#body.parts`. Called like a function, with or without a pattern, it
 ---gives the objects one after the other: `for part in body:parts("leg*") do … end`. A pattern has `*` (any text), `?` (one
 ---character), `[1-3]`, `[!a]` and `{left,right}`. Instead of a pattern, it also accepts a list of names and objects.

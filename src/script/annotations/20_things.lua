@@ -10,10 +10,11 @@
 ---@field parts part_list # read-only. Its parts, in stream order; call it to iterate over those that match a pattern.
 ---@field joints joint_list # read-only. Its joints, in stream order; call it to iterate over those that match a pattern.
 ---@field motors motor_list # read-only. Its motors, in stream order; call it to iterate over those that match a pattern.
+---@field sensors sensor_list # read-only. Its sensors, in the order of their creation.
 ---@field behaviors behavior_list # read-only. Its behaviors, in the order in which they run.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@properties body
----@error body.wieght = 3 --> body 'body' has no property 'wieght'; there are: alive, angular_velocity, asleep, behaviors, can_sleep, enabled, excluded_pairs, joints …
+---@error body.wieght = 3 --> body 'body' has no property 'wieght'; there are: alive, angular_momentum, angular_velocity, asleep, behaviors, can_sleep, center_of_mass, enabled …
 ---@error body.name = "other" --> body 'body': 'name' can be read, not set
 ---@see sim:add_body, sim:load_urdf, part
 ---@example body
@@ -114,6 +115,14 @@ function body_:motor(key) end
 ---@example robot
 function body_:link(name) end
 
+---Returns the lowest and the highest coordinates of the body's collision shapes, or of its visuals if it has none: a
+---box along the world's axes. nil if it has neither. Planes don't count.
+---@return vec3? # m, world: the lowest coordinates.
+---@return vec3? # m, world: the highest coordinates.
+---@see body.position, sim:load_urdf
+---@example bounds
+function body_:bounds() end
+
 ---Creates a copy of the body as it has been described so far.
 ---@param name string # The name of the copy, unique in the world.
 ---@param opts? body_opts # Such as `position`.
@@ -166,9 +175,13 @@ function body_:state_hash() end
 ---@field shape shape # read-only. The geometry, which other parts may share.
 ---@properties part
 ---@error body:part(1).mass = "heavy" --> part 'body/ball': 'mass' takes a number, not 'heavy'
+---@error body:part(1).motion = "kinetic" --> part 'body/ball': 'motion' can't be 'kinetic'; did you mean 'kinematic'?
 ---@see body:add_part, shape
 ---@example materials
 ---@example collision_groups
+---@example platform
+---@example conveyor
+---@example copies
 local part_ = {}
 
 ---@class part_opts
@@ -237,6 +250,7 @@ local joint_ = {}
 ---@example spin
 ---@example spring
 ---@example motor_axes
+---@example torque
 local motor_ = {}
 
 ---@class motor_opts

@@ -133,6 +133,16 @@ function sim:add_sphere_shape(name, radius) end
 ---@example shapes
 function sim:add_box_shape(name, size) end
 
+---Creates an ellipsoid.
+---@param name string # A name of your choice, unique among shapes.
+---@param radii vec3like # m, half the lengths of its axes
+---@return shape
+---@error sim:add_ellipsoid_shape("egg", 0.1) --> add_ellipsoid_shape: the radii takes a vec3, not 0.1
+---@error sim:add_ellipsoid_shape("egg", vec3(0.1, 0, 0.1)) --> shape 'egg': an ellipsoid needs a radius of 0.0001 .. 10000 m, not 0
+---@see body:add_part
+---@example shapes
+function sim:add_ellipsoid_shape(name, radii) end
+
 ---Creates a cylinder along z.
 ---@param name string # A name of your choice, unique among shapes.
 ---@param radius number # m
@@ -167,7 +177,7 @@ function sim:add_cone_shape(name, radius, height) end
 
 ---Creates the convex hull of a mesh file, or of points.
 ---@param name string # A name of your choice, unique among shapes.
----@param source string|vec3like[] # A file (STL, OBJ or DAE), or a list of points, m.
+---@param source string|vec3like[] # A file (STL, OBJ, DAE, PLY or glTF), or a list of points, m.
 ---@param opts? mesh_opts
 ---@return shape
 ---@error sim:add_convex_mesh_shape("hull", "no.stl") --> there is no file 'no.stl'; looked for …
@@ -181,6 +191,56 @@ function sim:add_convex_mesh_shape(name, source, opts) end
 ---@see shape:add_child
 ---@example compound
 function sim:add_compound_shape(name) end
+
+---@page sensors
+
+---Returns the first part on the straight line between two points, or nil. It sees the exact shapes in their present
+---poses; a line that starts in a part does not see that part.
+---@param from vec3like # m, world.
+---@param to vec3like # m, world.
+---@param opts? ray_opts
+---@return ray_hit?
+---@error sim:ray(vec3(0, 0, 0 / 0), vec3()) --> sim:ray: from takes a finite number, not nan
+---@see sim:rays, part:add_range_finder
+---@example rays
+function sim:ray(from, to, opts) end
+
+---Returns the distances of the first parts on the lines from a point to each of the targets; `math.huge` without a part.
+---@param from vec3like # m, world.
+---@param targets vec3like[] # m, world.
+---@param opts? rays_opts
+---@return number[]
+---@error sim:rays(vec3(), 3) --> sim:rays: targets is a list of vec3s, not 3
+---@see sim:ray
+---@example rays
+function sim:rays(from, targets, opts) end
+
+---Returns the parts whose surface is at most `radius` away from a point, in stream order, and a list of their distances
+---(negative: the point is inside the part).
+---@param center vec3like # m, world.
+---@param radius number # m, at least 0.
+---@param opts? ray_opts
+---@return part[]
+---@return number[]
+---@error sim:overlap_sphere(vec3(), -1) --> sim:overlap_sphere: the radius must be at least 0, not -1
+---@see part:add_zone
+---@example rays
+function sim:overlap_sphere(center, radius, opts) end
+
+---@class ray_opts
+---@field ignore? body|part # A body or part that is not seen.
+
+---@class rays_opts: ray_opts
+---@field into? number[] # A table for the result, which is then not created in each call.
+
+---A point at which a line meets a part.
+---@class ray_hit
+---@field part part # The part.
+---@field position vec3 # The point in m, world.
+---@field normal vec3 # Normal of the surface there, world, unit length, outwards.
+---@field distance number # Distance from the start of the line in m.
+---@see sim:ray
+---@example rays
 
 ---@page events
 
@@ -199,9 +259,38 @@ function sim:on_step(f) end
 
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
 ---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
----@see part.report_contacts
+---@see part.report_contacts, sim:on_contact_stay, sim:on_contact_end
 ---@example contacts
 function sim:on_contact(f) end
+
+---Calls f in each tick in which a part with `report_contacts` still touches another: normal impulse of the last tick in
+---N·s, position in m.
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
+---@error sim:on_contact_stay(3) --> sim:on_contact_stay takes a function, not 3
+---@see sim:on_contact
+---@example contact_points
+function sim:on_contact_stay(f) end
+
+---Calls f when a part with `report_contacts` no longer touches another; the impulse is 0, the position the last one.
+---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.
+---@error sim:on_contact_end(3) --> sim:on_contact_end takes a function, not 3
+---@see sim:on_contact
+---@example contact_points
+function sim:on_contact_end(f) end
+
+---Calls f when a part enters a zone.
+---@param f fun(zone: zone, part: part) # The function to call.
+---@error sim:on_zone_enter(3) --> sim:on_zone_enter takes a function, not 3
+---@see part:add_zone, sim:on_zone_leave
+---@example zone
+function sim:on_zone_enter(f) end
+
+---Calls f when a part leaves a zone.
+---@param f fun(zone: zone, part: part) # The function to call.
+---@error sim:on_zone_leave(3) --> sim:on_zone_leave takes a function, not 3
+---@see sim:on_zone_enter
+---@example zone
+function sim:on_zone_leave(f) end
 
 ---Calls f each time the simulation time passes a multiple of `seconds`. Timers set in callbacks survive a reload.
 ---@param seconds number # s, simulation time. Above 0.

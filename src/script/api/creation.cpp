@@ -6,6 +6,7 @@
 
 #include "base/log/log.h"
 #include "base/text.h"
+#include "model/look/mesh_look.h"
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
 #include "model/problems.h"
@@ -17,7 +18,16 @@
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
 
-namespace limber::script::calls {
+namespace limber::script {
+
+bool is_full(ScriptContext& c) {
+  const std::size_t max = c.options.limits.max_objects;
+  if (c.world->store().view()->slot_count < max) return false;
+  c.reject(fmt::format("a scene can have at most {} objects (bodies, parts, joints, motors, shapes)", max));
+  return true;
+}
+
+namespace calls {
 
 namespace {
 
@@ -28,14 +38,6 @@ Pose pose_at(const double* v) { return {{v[0], v[1], v[2]}, glm::normalize(quat_
 template <class T>
 std::int32_t creation_result(ScriptContext& c, const Result<T*>& thing) {
   return thing ? c.set_id((*thing)->id()) : c.reject(thing.error());
-}
-
-// limits the number of objects, since a loop that creates them could exhaust the memory before it is stopped
-bool is_full(ScriptContext& c) {
-  const std::size_t max = c.options.limits.max_objects;
-  if (c.world->store().view()->slot_count < max) return false;
-  c.reject(fmt::format("a scene can have at most {} objects (bodies, parts, joints, motors, shapes)", max));
-  return true;
 }
 
 // pose of a body's root; NaN means "as the model places it"
@@ -82,11 +84,21 @@ Error not_loaded(std::string_view file) {
                   file)};
 }
 
+// what the file has, but isn't drawn
+void report_look(const std::string& path, const model::MeshModel& mesh) {
+  if (mesh.look == nullptr) return;
+  for (const model::Problem& problem : mesh.look->problems) {
+    if (problem.severity != model::Severity::note)
+      log_warning("{}: {}. {}", printable(path), problem.text, problem.fix);
+  }
+}
+
 Result<std::shared_ptr<const model::MeshModel>> read_mesh(const ScriptContext& c, std::string_view file,
                                                           const Vec3& scale, int max_vertices) {
   const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
   Result<std::shared_ptr<const model::MeshModel>> mesh = c.sources->mesh(*path, scale);
+  if (mesh) report_look(*path, **mesh);
   if (!mesh || max_vertices == model::HullLimits{}.max_vertices) return mesh;
   auto changed = std::make_shared<model::MeshModel>(**mesh);
   const model::Hull hull =
@@ -258,6 +270,9 @@ std::int32_t add_shape(void* c, const char* name, std::int32_t length, const cha
   } else if (wanted == "box") {
     model.kind = model::ShapeKind::box;
     model.size = {n[0], n[1], n[2]};
+  } else if (wanted == "ellipsoid") {
+    model.kind = model::ShapeKind::ellipsoid;
+    model.size = 2.0 * Vec3(n[0], n[1], n[2]);
   } else if (wanted == "compound") {
     model.kind = model::ShapeKind::compound;
   } else {
@@ -349,4 +364,5 @@ std::int32_t load_urdf(void* c, const char* path, std::int32_t path_length, cons
   return creation_result(context, body);
 }
 
-}  // namespace limber::script::calls
+}  // namespace calls
+}  // namespace limber::script

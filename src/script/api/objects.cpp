@@ -8,6 +8,8 @@
 #include "script/api/script_context.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/sensors/sensor_list.h"
+#include "sim/shapes/bounds.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
 #include "sim/state/state_hash.h"
@@ -20,7 +22,7 @@ namespace limber::script::calls {
 
 namespace {
 
-enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears };
+enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears, sensors };
 
 // The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
 template <class T>
@@ -54,6 +56,7 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   const sim::Body* body = object_of<sim::Body>(c, id);
   if (body == nullptr) return kRemoved;
   if (kind == behaviors) return item(c, body->behaviors().list(), i);
+  if (kind == sensors) return item(c, body->sensors().list(), i);
   if (kind == parts) return item(c, body->parts(), i);
   if (kind == joints) return item(c, body->joints(), i);
   return item(c, body->motors(), i);
@@ -84,6 +87,12 @@ template <class T>
 std::size_t index_in(std::span<const std::unique_ptr<T>> list, const T* object) {
   const auto at = std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.get() == object; });
   return static_cast<std::size_t>(at - list.begin());
+}
+
+// Returns the part of a sensor (0), or the part that it sees (1).
+NodeId related_to(const ScriptContext& c, const sim::Sensor& sensor, std::int32_t which) {
+  if (which == 0) return sensor.part().id();
+  return c.alive(sensor.other()) ? sensor.other() : NodeId{};
 }
 
 }  // namespace
@@ -118,6 +127,7 @@ std::int32_t related(void* c, std::int32_t slot, std::int32_t generation, std::i
   if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) {
     return context.set_id(which == 0 ? gear->joint_a().id() : gear->joint_b().id());
   }
+  if (const sim::Sensor* sensor = sensor_of(context, id)) return context.set_id(related_to(context, *sensor, which));
   if (const sim::Part* part = object_of<sim::Part>(context, id)) {
     return context.set_id(context.alive(part->shape()) ? part->shape() : NodeId{});
   }
@@ -161,14 +171,15 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
     if (thing != nullptr) return context.set_id(thing->id());
     return id_or_error(context, thing, list, kind_name, fmt::format("body '{}' has", body->name()), wanted);
   };
+  if (kind == sensors) return in_body(body->sensors().find(wanted), body->sensors().list(), "sensor");
   if (kind == parts) return in_body(body->find_part(wanted), body->parts(), "part");
   if (kind == joints) return in_body(body->find_joint(wanted), body->joints(), "joint");
   return in_body(body->find_motor(wanted), body->motors(), "motor");
 }
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
-  // Sort order: bodies, each followed by its parts, joints, motors, behaviors; then shapes, gears, groups; removed
-  // objects last.
+  // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors; then shapes, gears, groups;
+  // removed objects last.
   const ScriptContext& context = context_of(c);
   const sim::World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -193,6 +204,9 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     const std::span<sim::Behavior* const> all = behavior->body().behaviors().list();
     return within(behavior->body(), 4,
                   static_cast<std::size_t>(std::find(all.begin(), all.end(), behavior) - all.begin()));
+  }
+  if (const sim::Sensor* sensor = sensor_of(context, id)) {
+    return within(sensor->body(), 5, index_in<sim::Sensor>(sensor->body().sensors().list(), sensor));
   }
   if (const sim::BehaviorGroup* group = group_of(context, id)) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
@@ -223,6 +237,19 @@ std::int32_t link_pose(void* c, std::int32_t slot, std::int32_t generation, cons
   const double values[] = {pose->position.x, pose->position.y, pose->position.z, pose->rotation.x,
                            pose->rotation.y, pose->rotation.z, pose->rotation.w};
   std::copy(std::begin(values), std::end(values), context.answer.number);
+  return kOk;
+}
+
+std::int32_t body_bounds(void* c, std::int32_t slot, std::int32_t generation) {
+  ScriptContext& context = context_of(c);
+  const sim::Body* body = object_of<sim::Body>(context, id_of(slot, generation));
+  if (body == nullptr) return kRemoved;
+  const sim::Bounds bounds = sim::bounds_of(*body);
+  if (bounds.empty()) return kRejected;
+  for (int axis = 0; axis < 3; axis++) {
+    context.answer.number[axis] = bounds.low[axis];
+    context.answer.number[axis + 3] = bounds.high[axis];
+  }
   return kOk;
 }
 

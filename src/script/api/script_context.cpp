@@ -126,7 +126,7 @@ std::string label_of(const ScriptContext& c, NodeId id) {
     return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
   if (table == &sim::Part::table() || table == &sim::Joint::table() || table == &sim::Motor::table() ||
-      behavior_of(c, id) != nullptr) {
+      behavior_of(c, id) != nullptr || sensor_of(c, id) != nullptr) {
     return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
   }
   return "params";

@@ -30,6 +30,7 @@
 namespace limber::sim {
 class Behavior;
 class BehaviorGroup;
+class Sensor;
 }  // namespace limber::sim
 
 namespace limber::script {
@@ -71,7 +72,8 @@ struct NeighborResults {
   /// Iterations and the lists that they iterate over; nested loops use several at a time.
   std::array<LimberIteration, kMaxIterations> iterations{};
   std::array<std::vector<sim::Neighbor>, kMaxIterations> lists;
-  LimberGroupMeans group_means{};  ///< Means of a whole group, as last requested; valid until the call ends.
+  std::vector<sim::NearPart> near_parts;  ///< Of the last search around a point.
+  LimberGroupMeans group_means{};         ///< Means of a whole group, as last requested; valid until the call ends.
 };
 
 /// Models and meshes that the run has loaded, by file name and import options: callbacks can reuse them, but must not
@@ -178,6 +180,11 @@ T* object_of(const ScriptContext& c, NodeId id) {
 /// Returns the behavior or group with this id, or null.
 sim::Behavior* behavior_of(const ScriptContext& c, NodeId id);
 sim::BehaviorGroup* group_of(const ScriptContext& c, NodeId id);
+/// Returns the sensor of any kind with this id, or null.
+sim::Sensor* sensor_of(const ScriptContext& c, NodeId id);
+/// True, with an error as the answer, if the scene can't have more objects: a loop that creates them could exhaust the
+/// memory before it is stopped.
+bool is_full(ScriptContext& c);
 /// Returns the name of an object for messages: "motor 'arm/joint_2'", "body 'arm'", "sim".
 std::string label_of(const ScriptContext& c, NodeId id);
 

@@ -1,4 +1,4 @@
-// C API: texts and names, random numbers, contacts, a scene's parameters, error reports.
+// C API: texts and names, random numbers, a scene's parameters, error reports.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +13,6 @@
 #include "script/vm/guard.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/visuals/visuals.h"
-#include "sim/world/part.h"
 
 namespace limber::script::calls {
 
@@ -139,22 +138,6 @@ double max(double x, double y) { return y > x ? y : x; }
 double clamp(double x, double lo, double hi) {
   if (x < lo) return lo;
   return x > hi ? hi : x;
-}
-
-std::int32_t contact(void* c, std::int32_t index) {
-  ScriptContext& context = context_of(c);
-  const std::span<const sim::ContactEvent> list = context.world->contacts().events();
-  if (index >= static_cast<std::int32_t>(list.size())) return kRejected;
-  const sim::ContactEvent& event = list[static_cast<std::size_t>(index)];
-  // an earlier callback may have removed one of them
-  if (!context.alive(event.part) || !context.alive(event.other)) return kRemoved;
-  const auto word = [](std::uint32_t v) { return static_cast<double>(v); };
-  const double numbers[] = {event.impulse,          event.position.x,
-                            event.position.y,       event.position.z,
-                            word(event.part.slot),  word(event.part.generation),
-                            word(event.other.slot), word(event.other.generation)};
-  std::copy(std::begin(numbers), std::end(numbers), context.answer.number);
-  return kOk;
 }
 
 std::int32_t camera_glide(void* c, double eye_x, double eye_y, double eye_z, double target_x, double target_y,

@@ -199,6 +199,13 @@ for _, property in ipairs { "collision_group", "collision_mask" } do
   part.setters[property] = function(h, value) set(h, group_bits(h, property, value)) end
 end
 
+method(body, "bounds", function(h)
+  local code = api.body_bounds(ctx, h.slot_, h.generation_)
+  if code == -1 then return nil end -- it has no shape
+  if code ~= 0 then P.fail_removed(h) end
+  return P.V(number[0], number[1], number[2]), P.V(number[3], number[4], number[5])
+end)
+
 method(body, "state_hash", function(h)
   api.state_hash(ctx, h.slot_, h.generation_)
   return P.text()

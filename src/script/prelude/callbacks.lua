@@ -58,7 +58,8 @@ local function call_all(list, a, b, c, d)
 end
 jit.off(call_all)
 
-local starts, steps, contacts, timers = {}, {}, {}, {}
+local starts, steps, timers = {}, {}, {}
+local contacts = { [0] = {}, {}, {} }  -- by phase: begin, stay, end
 
 method("on_start", function(_, f)
   P.check_function(f, "sim:on_start")
@@ -68,10 +69,22 @@ method("on_step", function(_, f)
   P.check_function(f, "sim:on_step")
   add(steps, { f = f }, "sim:on_step")
 end)
-method("on_contact", function(_, f)
-  P.check_function(f, "sim:on_contact")
-  add(contacts, { f = f }, "sim:on_contact")
-end)
+for phase, name in pairs { [0] = "on_contact", "on_contact_stay", "on_contact_end" } do
+  local subject = "sim:" .. name
+  method(name, function(_, f)
+    P.check_function(f, subject)
+    add(contacts[phase], { f = f }, subject)
+  end)
+end
+
+local zones = { [0] = {}, {} }  -- by event: leave, enter
+for enters, name in pairs { [0] = "on_zone_leave", "on_zone_enter" } do
+  local subject = "sim:" .. name
+  method(name, function(_, f)
+    P.check_function(f, subject)
+    add(zones[enters], { f = f }, subject)
+  end)
+end
 
 -- Timers. A sum of time steps misses a multiple by a few bits, so a timer is due one nanosecond early.
 local kTolerance = 1e-9
@@ -183,7 +196,7 @@ end
 function P.exports.retire()
   earlier = true
   local removed = P.remove_handlers()
-  for _, list in ipairs { steps, contacts } do
+  for _, list in ipairs { steps, contacts[0], contacts[1], contacts[2], zones[0], zones[1] } do
     for _, callback in ipairs(list) do
       if callback.in_callback and not callback.disabled then removed = removed + 1 end
     end
@@ -269,17 +282,34 @@ local function run_timers()
 end
 jit.off(run_timers)
 
-local function run_contacts()
-  if #contacts == 0 then return end
+local function run_contacts(phase)
+  local list = contacts[phase]
+  if #list == 0 then return end
   local i = 0
   while true do
-    local code = api.contact(ctx, i)
+    local code = api.contact(ctx, phase, i)
     if code == -1 then return end
     if code == 0 then
       local impulse, position = number[0], P.V(number[1], number[2], number[3])
       local slot, generation = number[6], number[7]
       local part = P.handle_of(number[4], number[5])
-      call_all(contacts, part, P.handle_of(slot, generation), impulse, position)
+      call_all(list, part, P.handle_of(slot, generation), impulse, position)
+    end
+    i = i + 1
+  end
+end
+
+local function run_zones(enters)
+  local list = zones[enters]
+  if #list == 0 then return end
+  local i = 0
+  while true do
+    local code = api.zone_event(ctx, enters, i)
+    if code == -1 then return end
+    if code == 0 then
+      local slot, generation = number[2], number[3]
+      local zone = P.handle_of(number[0], number[1])
+      call_all(list, zone, P.handle_of(slot, generation))
     end
     i = i + 1
   end
@@ -290,7 +320,9 @@ function P.exports.start()
 end
 function P.exports.tick(dt)
   run_timers()
-  run_contacts()
+  for phase = 0, 2 do run_contacts(phase) end
+  run_zones(1)
+  run_zones(0)
   call_all(steps, dt)
   P.report_fallbacks()
 end

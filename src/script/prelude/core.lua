@@ -18,6 +18,10 @@ ffi.cdef [[
   typedef struct camera { const int32_t slot_, generation_; } camera;
   typedef struct look { const int32_t slot_, generation_; } look;
   typedef struct gear { const int32_t slot_, generation_; } gear;
+  typedef struct imu { const int32_t slot_, generation_; } imu;
+  typedef struct range_finder { const int32_t slot_, generation_; } range_finder;
+  typedef struct zone { const int32_t slot_, generation_; } zone;
+  typedef struct touch { const int32_t slot_, generation_; } touch;
   typedef struct list { const int32_t slot_, generation_, kind_; } list;
   typedef struct link { const int32_t slot_, generation_, number_; } link;
   typedef struct timer { const int32_t number_, run_; } timer;

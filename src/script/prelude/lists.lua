@@ -8,10 +8,10 @@ P.L = L
 local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list = "parts" },
   { name = "joint", list = "joints" }, { name = "motor", list = "motors" }, { name = "shape", list = "shapes" },
   { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" },
-  { name = "gear", list = "gears" } }
+  { name = "gear", list = "gears" }, { name = "sensor", list = "sensors" } }
 
 -- the contents of a list are collected on first use and cached until the structure of the world changes
-local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {} }
+local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {}, {} }
 
 local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_
@@ -84,12 +84,12 @@ function P.find_in(owner, kind, key)
     fail("%s has %d %s; there is no %s", P.label(owner), #items, kinds[kind].list, tostring(key))
   end
   local class = P.class_of(key)
-  if not class or class.name ~= kinds[kind].name then
+  if not class or (class.kind or class.name) ~= kinds[kind].name then
     fail("expected the name or number of a %s, not %s", kinds[kind].name, describe(key))
   end
   P.slot_of(key)
   local of = P.class_of(owner).name == "behavior" and owner.body or owner
-  if (kind > 0 and kind < 4 or kind == 5) and key.body ~= of then
+  if (kind > 0 and kind < 4 or kind == 5 or kind == 8) and key.body ~= of then
     fail("%s does not belong to %s", P.label(key), P.label(owner))
   end
   return key

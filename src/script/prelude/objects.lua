@@ -11,7 +11,10 @@ function P.add_class(class) by_table[class.table], by_ctype[tonumber(class.ctype
 -- each behavior type has a table of its own; its class is created on first use (behaviors/handles.lua)
 local function class_of_table(number) return by_table[number] or P.make_class(number) end
 P.class_of_table = class_of_table
-for i, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear" } do
+-- the classes of c_api's class_table, in its order
+P.class_names = { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear", "imu",
+  "range_finder", "zone", "touch" }
+for i, name in ipairs(P.class_names) do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, properties = {} }
   class.number = i - 1
   classes[name], by_ctype[tonumber(class.ctype)] = class, class

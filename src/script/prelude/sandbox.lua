@@ -125,17 +125,23 @@ function P.make_env(file)
   })
 end
 
-local function compile_and_run(text, name)
-  P.env = P.make_env(-1)
+local function run_chunk(text, name)
+  P.sources[name] = text
   local chunk, message = P.load(text, "@" .. name, P.env)
   if not chunk then error(message, 0) end
   chunk()
 end
 
--- runs a scene's file; false if it fails
-function P.exports.run(text, name)
-  P.sources[name], P.main = text, name
-  return P.guarded_run(compile_and_run, text, name)
+local function compile_and_run(text, name, added)
+  P.env = P.make_env(-1)
+  run_chunk(text, name)
+  if added ~= "" then run_chunk(added, "added models") end
+end
+
+-- runs a scene's file, then the text of the models that were added to it; false if it fails
+function P.exports.run(text, name, added)
+  P.main = name
+  return P.guarded_run(compile_and_run, text, name, added)
 end
 
 -- all names that a scene sees, one per line: globals, members of libraries, then members and methods of objects
@@ -151,7 +157,7 @@ function P.exports.names()
   end
   for _, key in ipairs(P.osc_members) do lines[#lines + 1] = "osc." .. key end
   for _, key in ipairs(P.preset_members) do lines[#lines + 1] = "presets." .. key end
-  for _, name in ipairs { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear" } do
+  for _, name in ipairs(P.class_names) do
     local class = P.classes[name]
     for _, key in ipairs(P.sorted_keys(class.getters)) do lines[#lines + 1] = name .. "." .. key end
     for _, key in ipairs(P.sorted_keys(class.methods)) do lines[#lines + 1] = name .. ":" .. key end

@@ -68,6 +68,10 @@ method("add_box_shape", function(_, name, size)
   local s = P.check_vec3(size, "add_box_shape: the size (full edges)")
   return add_shape(name, "box", s.x, s.y, s.z)
 end)
+method("add_ellipsoid_shape", function(_, name, radii)
+  local r = P.check_vec3(radii, "add_ellipsoid_shape: the radii")
+  return add_shape(name, "ellipsoid", r.x, r.y, r.z)
+end)
 for _, kind in ipairs { "cylinder", "capsule", "cone" } do
   method("add_" .. kind .. "_shape", function(_, name, radius, height)
     local subject = "add_" .. kind .. "_shape: the "

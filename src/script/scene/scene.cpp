@@ -37,7 +37,7 @@ Result<void> Scene::run(const std::string& file, const RunInputs* detached) {
   }
   if (detached == nullptr) vm_->set_run_number(run_number_);
   c.answer.top_level = 1;
-  Result<void> result = vm_->run(*text, c.files.display_path(file), fault_);
+  Result<void> result = vm_->run(*text, c.files.display_path(file), c.sources->added_text(c.options.added), fault_);
   c.generator();  // seed the generator with the seed set by the top level
   c.answer.top_level = 0;
   c.params.previous = {};

@@ -20,6 +20,9 @@ struct SceneOptions {
   ScriptLimits limits;
   /// A reload carries over timers: those of callbacks, and the time of the top level's sim:after. False for old takes.
   bool keep_timers = true;
+  /// Lua text that runs after the file: it loads the models that the user has added to the scene. Recorded sources
+  /// contain a text of their own, which replaces it.
+  std::string added = {};
   std::shared_ptr<const Sources> sources = nullptr;  ///< Files to use instead of the disk; null: the disk.
 };
 

@@ -7,10 +7,14 @@
 #include <fmt/format.h>
 
 #include "base/hash.h"
+#include "model/look/mesh_look.h"
 
 namespace limber::script {
 
 namespace {
+
+// name of the added text among the recorded files; not a path, because paths are absolute
+constexpr const char* kAddedText = "added models";
 
 // lives as long as the process, so that a reset or another scene loads the same file at no cost
 model::ModelLibrary& models() {
@@ -81,6 +85,16 @@ Result<std::string> Sources::text(const std::string& path) {
   return text;
 }
 
+std::string Sources::added_text(const std::string& given) {
+  if (from_archive()) {
+    const std::string* const text = earlier_->archived_files_->content(kAddedText);
+    added_ = text == nullptr ? std::string() : *text;
+  } else {
+    added_ = given;
+  }
+  return added_;
+}
+
 Result<std::shared_ptr<const model::BodyModel>> Sources::model(const std::string& path,
                                                                const model::ImportOptions& options) {
   const std::string key = model::model_key(path, options);
@@ -101,11 +115,15 @@ Result<std::shared_ptr<const model::MeshModel>> Sources::mesh(const std::string&
   Result<std::shared_ptr<const model::MeshModel>> mesh = before ? *before : library.meshes().load(path, scale);
   if (!mesh) return mesh;
   contents_[path] = (*mesh)->content_hash;
+  if ((*mesh)->look != nullptr) {
+    for (const auto& [file, hash] : (*mesh)->look->files) contents_[file] = hash;
+  }
   return meshes_[key] = *mesh;
 }
 
 SourcesRead Sources::read() const {
   SourcesRead read{found_, texts_, {}, {}};
+  if (!added_.empty()) read.texts[kAddedText] = added_;
   for (const auto& [key, model] : models_) {
     const std::string folder = std::filesystem::path(model->file).parent_path().string();
     for (const auto& [name, file] : model->mesh_paths) read.meshes[model::FileSet::mesh_key(folder, name)] = file;

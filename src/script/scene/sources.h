@@ -47,6 +47,10 @@ class Sources {
   std::string find_behavior(const ScriptFiles& files, std::string_view type);
   /// Returns a script's text.
   Result<std::string> text(const std::string& path);
+  /// Returns the text that runs after the scene's file (SceneOptions::added): that of the archived run, else `given`.
+  std::string added_text(const std::string& given);
+  /// The text that added_text() has returned.
+  const std::string& added() const { return added_; }
   Result<std::shared_ptr<const model::BodyModel>> model(const std::string& path, const model::ImportOptions& options);
   Result<std::shared_ptr<const model::MeshModel>> mesh(const std::string& path, const Vec3& scale);
 
@@ -69,6 +73,7 @@ class Sources {
   std::shared_ptr<model::ModelLibrary> library_;  // of the archived files
   std::map<std::string, std::string> found_;
   std::map<std::string, std::string> texts_;
+  std::string added_;
   std::map<std::string, std::uint64_t> contents_;  // hashes of all files read, by path; 0: unknown
   std::map<std::string, std::shared_ptr<const model::BodyModel>> models_;
   std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes_;

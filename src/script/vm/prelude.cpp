@@ -11,7 +11,7 @@
 namespace limber::script {
 
 std::span<const std::string_view> prelude_order() {
-  static constexpr std::array<std::string_view, 32> kOrder{"core.lua",
+  static constexpr std::array<std::string_view, 33> kOrder{"core.lua",
                                                            "library.lua",
                                                            "syntax.lua",
                                                            "compiled.lua",
@@ -25,6 +25,7 @@ std::span<const std::string_view> prelude_order() {
                                                            "forces.lua",
                                                            "behaviors/handles.lua",
                                                            "sim.lua",
+                                                           "sensors.lua",
                                                            "visuals.lua",
                                                            "callbacks.lua",
                                                            "osc.lua",

@@ -175,13 +175,14 @@ bool Vm::enable_jit() {
   return true;
 }
 
-Result<void> Vm::run(std::string_view text, std::string_view name, ScriptPlace& fault) {
+Result<void> Vm::run(std::string_view text, std::string_view name, std::string_view added, ScriptPlace& fault) {
   lua_State* const L = state_.get();
   collector_->begin_run();
   lua_rawgeti(L, LUA_REGISTRYINDEX, run_);
   push(L, text);
   push(L, name);
-  const bool called = call(2, 1);
+  push(L, added);
+  const bool called = call(3, 1);
   const bool success = called && lua_toboolean(L, -1) != 0;
   lua_settop(L, 0);
   collector_->end_run();

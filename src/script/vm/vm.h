@@ -36,9 +36,9 @@ class Vm {
   Vm(const Vm&) = delete;
   Vm& operator=(const Vm&) = delete;
 
-  /// Runs a scene's text in a fresh environment. The error has "file:line: message", the source line and the traceback;
-  /// `fault` receives its place. [sim]
-  Result<void> run(std::string_view text, std::string_view name, ScriptPlace& fault);
+  /// Runs a scene's text in a fresh environment, then `added` in the same one. The error has "file:line: message", the
+  /// source line and the traceback; `fault` receives its place. [sim]
+  Result<void> run(std::string_view text, std::string_view name, std::string_view added, ScriptPlace& fault);
   /// Runs the on_start callbacks. Errors are reported to the host. [sim]
   void start();
   /// Runs timers, contacts, on_step. Allocates no C++ memory. [sim]

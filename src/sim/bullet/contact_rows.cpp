@@ -4,6 +4,7 @@
 
 #include "base/memory/prefetch.h"
 #include "sim/bullet/island_solver.h"
+#include "sim/bullet/surface_motion.h"
 #include "sim/collision/contact_friction.h"
 #include "sim/collision/dispatcher.h"
 
@@ -73,11 +74,12 @@ void IslandSolver::convertContacts(btPersistentManifold** manifolds, int count, 
 void IslandSolver::convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info) {
   auto* const object_a = const_cast<btCollisionObject*>(manifold.getBody0());
   auto* const object_b = const_cast<btCollisionObject*>(manifold.getBody1());
-  const int id_a = getOrInitSolverBody(*object_a, info.m_timeStep);
-  const int id_b = getOrInitSolverBody(*object_b, info.m_timeStep);
+  const int id_a = solver_body(*object_a, info.m_timeStep);
+  const int id_b = solver_body(*object_b, info.m_timeStep);
   const btSolverBody& a = m_tmpSolverBodyPool[id_a];
   const btSolverBody& b = m_tmpSolverBodyPool[id_b];
   if (a.m_invMass.fuzzyZero() && b.m_invMass.fuzzyZero()) return;
+  const bool surface_moves = has_surface_motion(*object_a, a, *object_b, b);
   for (int j = 0; j < manifold.getNumContacts(); ++j) {
     btManifoldPoint& point = manifold.getContactPoint(j);
     if (point.getDistance() > manifold.getContactProcessingThreshold()) continue;
@@ -94,14 +96,22 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
     normal.m_cfm += kNormalSoftness;
     normal.m_frictionIndex = m_tmpSolverContactFrictionConstraintPool.size();
 
-    const collision::FrictionFrame frame = collision::sliding_frame(
-        point, *object_a, *object_b, current_motion(a).velocity_at(arm_a) - current_motion(b).velocity_at(arm_b),
-        expected_motion(a).velocity_at(arm_a) - expected_motion(b).velocity_at(arm_b));
+    btVector3 slip = current_motion(a).velocity_at(arm_a) - current_motion(b).velocity_at(arm_b);
+    btVector3 expected = expected_motion(a).velocity_at(arm_a) - expected_motion(b).velocity_at(arm_b);
+    SurfaceMotion surface;
+    if (surface_moves) {
+      surface = surface_motion({*object_a, a, arm_a}, {*object_b, b, arm_b}, info.m_timeStep);
+      add_body_motion(normal, point, slip, surface.body, info);
+      slip += surface.velocity();
+      expected += surface.velocity();
+    }
+    const collision::FrictionFrame frame = collision::sliding_frame(point, *object_a, *object_b, slip, expected);
     point.m_lateralFrictionDir1 = frame.along;
     point.m_lateralFrictionDir2 = frame.across;
     for (const btVector3* axis : {&point.m_lateralFrictionDir1, &point.m_lateralFrictionDir2}) {
       btSolverConstraint& row =
-          addFrictionConstraint(*axis, id_a, id_b, index, point, arm_a, arm_b, object_a, object_b, relaxation, info);
+          addFrictionConstraint(*axis, id_a, id_b, index, point, arm_a, arm_b, object_a, object_b, relaxation, info,
+                                surface_moves ? -axis->dot(surface.velocity()) : btScalar(0));
       row.m_friction = frame.friction;
       row.m_lowerLimit = -frame.friction;
       row.m_upperLimit = frame.friction;
@@ -110,28 +120,47 @@ void IslandSolver::convert_contact(btPersistentManifold& manifold, const btConta
           axis == &point.m_lateralFrictionDir1 ? collision::friction_along : collision::friction_across;
       if (axis == &point.m_lateralFrictionDir2) add_viscous_friction(row, frame, last_normal_impulse);
     }
-    convert_rolling(point, index, id_a, id_b, last_normal_impulse);
+    convert_rolling(point, index, {id_a, id_b}, last_normal_impulse, surface.spin);
   }
 }
 
-void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b,
-                                   btScalar last_normal_impulse) {
+// Adds the motion of static bodies to the normal's row, which Bullet sets up as if they were at rest. `slip`: velocity
+// of A relative to B without it.
+void IslandSolver::add_body_motion(btSolverConstraint& normal, const btManifoldPoint& point, const btVector3& slip,
+                                   const btVector3& motion, const btContactSolverInfo& info) {
+  const btScalar speed = point.m_normalWorldOnB.dot(motion);
+  const btScalar approach = point.m_normalWorldOnB.dot(slip);
+  const auto restitution = [&](btScalar relative_speed) {
+    return std::max(btScalar(0),
+                    restitutionCurve(relative_speed, point.m_combinedRestitution, info.m_restitutionVelocityThreshold));
+  };
+  normal.m_rhs += (restitution(approach + speed) - restitution(approach) - speed) * normal.m_jacDiagABInv;
+}
+
+void IslandSolver::convert_rolling(btManifoldPoint& point, int contact, const ContactBodies& bodies,
+                                   btScalar last_normal_impulse, const btVector3& surface_spin) {
+  const bool spins = surface_spin != btVector3(0, 0, 0);
+  const auto target_speed = [&](const btVector3& axis) { return spins ? -axis.dot(surface_spin) : btScalar(0); };
   const auto add = [&](const btVector3& axis, btScalar friction, collision::FrictionRow kind) -> btSolverConstraint& {
-    btSolverConstraint& row =
-        addTorsionalFrictionConstraint(axis, id_a, id_b, contact, point, friction, axis, axis, nullptr, nullptr, 1);
+    btSolverConstraint& row = addTorsionalFrictionConstraint(axis, bodies.a, bodies.b, contact, point, friction, axis,
+                                                             axis, nullptr, nullptr, 1, target_speed(axis));
     row.m_overrideNumSolverIterations = kind;
-    add_external_torque(row, m_tmpSolverBodyPool[id_a], m_tmpSolverBodyPool[id_b]);
+    add_external_torque(row, m_tmpSolverBodyPool[bodies.a], m_tmpSolverBodyPool[bodies.b]);
     return row;
   };
   if (point.m_combinedSpinningFriction > 0) {
     add(point.m_normalWorldOnB, point.m_combinedSpinningFriction, collision::friction_spin);
   }
   if (!(point.m_combinedRollingFriction > 0)) return;
-  const btSolverBody& a = m_tmpSolverBodyPool[id_a];
-  const btSolverBody& b = m_tmpSolverBodyPool[id_b];
-  const collision::FrictionFrame frame =
-      collision::rolling_frame(point, current_motion(a).angular - current_motion(b).angular,
-                               expected_motion(a).angular - expected_motion(b).angular);
+  const btSolverBody& a = m_tmpSolverBodyPool[bodies.a];
+  const btSolverBody& b = m_tmpSolverBodyPool[bodies.b];
+  btVector3 spin = current_motion(a).angular - current_motion(b).angular;
+  btVector3 expected = expected_motion(a).angular - expected_motion(b).angular;
+  if (spins) {
+    spin += surface_spin;
+    expected += surface_spin;
+  }
+  const collision::FrictionFrame frame = collision::rolling_frame(point, spin, expected);
   add(frame.along, frame.friction, collision::friction_along);
   add_viscous_friction(add(frame.across, frame.friction, collision::friction_across), frame, last_normal_impulse);
 }

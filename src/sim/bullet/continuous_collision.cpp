@@ -65,11 +65,11 @@ collision::Sweep ContinuousCollision::sweep_of(const btCollisionObject& object, 
   sweep.start = object.getWorldTransform();
   sweep.radius = object.getCcdMotionThreshold();
   const btRigidBody* const body = btRigidBody::upcast(&object);
-  if (object.isStaticObject() || body == nullptr) return sweep;
-  sweep.linear = body->getLinearVelocity() * h;
+  if (body == nullptr) return sweep;
+  sweep.linear = body->getLinearVelocity() * h;  // also of static bodies that move (KinematicBodies)
   sweep.angular = body->getAngularVelocity() * h;
   const int index = awake_->index_of(object);
-  if (index < 0) return sweep;
+  if (index < 0) return sweep;  // static, or asleep
   if (state_[static_cast<std::size_t>(index)] != State::moved) {
     sweep.stop = stop(object);
   } else {

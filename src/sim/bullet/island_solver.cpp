@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "sim/bullet/rotation_step.h"
+#include "sim/bullet/surface_motion.h"
 
 namespace limber::sim::bullet {
 
 void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const btContactSolverInfo& info) {
+  moving_statics_.resizeNoInitialize(0);
   btSequentialImpulseConstraintSolver::convertBodies(bodies, count, info);
   for (int i = 0; i < count; ++i) {
     const btRigidBody* body = btRigidBody::upcast(bodies[i]);
@@ -18,6 +20,26 @@ void IslandSolver::convertBodies(btCollisionObject** bodies, int count, const bt
     const btVector3 change = to_bt(gyroscopic_change(*body, static_cast<double>(info.m_timeStep)));
     m_tmpSolverBodyPool[body->getCompanionId()].m_externalTorqueImpulse += change * body->getAngularFactor();
   }
+}
+
+// Like getOrInitSolverBody(), except that a static body that moves gets a solver body with its velocity, without mass
+// and without a rigid body, so that nothing is written to it. It may be shared by islands that other threads solve.
+int IslandSolver::solver_body(btCollisionObject& object, btScalar h) {
+  return is_moving_static(object) ? moving_static_body(static_cast<const btRigidBody&>(object))
+                                  : getOrInitSolverBody(object, h);
+}
+
+int IslandSolver::moving_static_body(const btRigidBody& body) {
+  for (int i = 0; i < moving_statics_.size(); ++i) {
+    if (moving_statics_[i].body == &body) return moving_statics_[i].solver_body;
+  }
+  const int id = m_tmpSolverBodyPool.size();
+  btSolverBody& solver_body = m_tmpSolverBodyPool.expandNonInitializing();
+  initSolverBody(&solver_body, nullptr, 0);
+  solver_body.m_linearVelocity = body.getLinearVelocity();
+  solver_body.m_angularVelocity = body.getAngularVelocity();
+  moving_statics_.push_back({&body, id});
+  return id;
 }
 
 // Joints hold pointers to their rows, which therefore must not move until the step is solved.
@@ -61,8 +83,8 @@ bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const
     JointConstraint& joint = static_cast<JointConstraint&>(*constraints[i]);
     if (!joint.isEnabled()) continue;
     plan(joint, info);
-    direct_.add_joint(joint, getOrInitSolverBody(joint.getRigidBodyA(), info.m_timeStep),
-                      getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep));
+    direct_.add_joint(joint, solver_body(joint.getRigidBodyA(), info.m_timeStep),
+                      solver_body(joint.getRigidBodyB(), info.m_timeStep));
   }
   plan_gears(constraints, count, info);
   for (const GearRow& row : gears_) direct_.add_gear(*row.gear, row.bodies);
@@ -81,7 +103,7 @@ void IslandSolver::plan_gears(btTypedConstraint** constraints, int count, const 
     row.gear = &gear;
     row.count = gear.jacobians().size();
     for (int k = 0; k < row.count; ++k) {
-      row.bodies[k] = getOrInitSolverBody(*gear.jacobians()[k].body, info.m_timeStep);
+      row.bodies[k] = solver_body(*gear.jacobians()[k].body, info.m_timeStep);
     }
   }
 }
@@ -140,8 +162,8 @@ void IslandSolver::convert_constraints(btTypedConstraint** constraints, int coun
       convert_rows(static_cast<JointConstraint&>(*constraints[i]), first, size.m_numConstraintRows, info);
     } else {
       // Bullet's own constraints: rows are swept one by one
-      const int a = getOrInitSolverBody(constraints[i]->getRigidBodyA(), info.m_timeStep);
-      const int b = getOrInitSolverBody(constraints[i]->getRigidBodyB(), info.m_timeStep);
+      const int a = solver_body(constraints[i]->getRigidBodyA(), info.m_timeStep);
+      const int b = solver_body(constraints[i]->getRigidBodyB(), info.m_timeStep);
       convertJoint(first, constraints[i], size, a, b, info);
       add_rows(first, size.m_numConstraintRows, false, 0);
     }
@@ -213,8 +235,8 @@ JointBlock& IslandSolver::add_rows(const btSolverConstraint* rows, int count, bo
 
 void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count,
                                 const btContactSolverInfo& info) {
-  const int id_a = getOrInitSolverBody(joint.getRigidBodyA(), info.m_timeStep);
-  const int id_b = getOrInitSolverBody(joint.getRigidBodyB(), info.m_timeStep);
+  const int id_a = solver_body(joint.getRigidBodyA(), info.m_timeStep);
+  const int id_b = solver_body(joint.getRigidBodyB(), info.m_timeStep);
   std::memset(static_cast<void*>(rows), 0, sizeof(btSolverConstraint) * static_cast<std::size_t>(count));
 
   // getInfo2() writes Jacobians, bounds, target velocity (m_rhs) and softness (m_cfm)

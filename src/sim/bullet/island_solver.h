@@ -49,6 +49,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
                                          const btContactSolverInfo& info) override;
 
  private:
+  int solver_body(btCollisionObject& object, btScalar h);
+  int moving_static_body(const btRigidBody& body);
   void reserve_rows(int joints);
   void plan(JointConstraint& joint, const btContactSolverInfo& info);
   bool plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
@@ -59,7 +61,14 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   void convert_gears(const btContactSolverInfo& info);
   btScalar sweep_joints();
   void convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info);
-  void convert_rolling(btManifoldPoint& point, int contact, int id_a, int id_b, btScalar last_normal_impulse);
+  void add_body_motion(btSolverConstraint& normal, const btManifoldPoint& point, const btVector3& slip,
+                       const btVector3& motion, const btContactSolverInfo& info);
+  struct ContactBodies {  // solver bodies
+    int a;
+    int b;
+  };
+  void convert_rolling(btManifoldPoint& point, int contact, const ContactBodies& bodies, btScalar last_normal_impulse,
+                       const btVector3& surface_spin);
   btScalar sweep_gear(int gear);
   btScalar sweep_rolling();
   void save_rolling_friction();
@@ -87,6 +96,12 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     btScalar impulse;
   };
   void apply_gear_impulse(const GearRow& row, btScalar impulse);
+
+  struct MovingStatic {
+    const btRigidBody* body;
+    int solver_body;
+  };
+  btAlignedObjectArray<MovingStatic> moving_statics_;  // of the present island
 
   solver::IndexedArray<GearRow> gears_;  // of the present island
   bool gears_swept_ = false;

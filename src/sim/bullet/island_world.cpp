@@ -105,6 +105,7 @@ void IslandWorld::step(double h, int substeps) {
     first_substep_ = i == 0;
     last_substep_ = i + 1 == substeps;
     for (const auto& solver : solvers) solver->set_substep(substeps - i, substeps);
+    kinematic_.wake(sleep_);
     if (awake_.valid(getNumCollisionObjects()) && awake_.empty() && !sleep_.any_wake_requested()) {
       sleeping_step();
     } else {
@@ -112,6 +113,7 @@ void IslandWorld::step(double h, int substeps) {
     }
   }
   first_substep_ = last_substep_ = false;
+  kinematic_.end_tick();
   if (awake_.valid(getNumCollisionObjects()) && sleep_.end_tick(awake_)) awake_.invalidate();
 }
 
@@ -274,6 +276,7 @@ void IslandWorld::solveConstraints(btContactSolverInfo& info) {
   // the direct solver counts and falls back per island
   islands_.make_batches(info.m_minimumSolverBatchSize, solvers.front()->direct_enabled());
   solve_islands(info);
+  kinematic_.advance(static_cast<double>(info.m_timeStep), last_substep_);
 }
 
 // Does all the work of a step on the bodies and joints of one batch while they are in the cache.
@@ -361,7 +364,7 @@ void IslandWorld::end_joints(Islands::Range range, btScalar h, bool any_fast, bo
   }
 }
 
-// Islands share only static bodies, which solvers never write to (none is kinematic).
+// Islands share only static bodies, which solvers never write to.
 void IslandWorld::solve_islands(const btContactSolverInfo& info) {
   const BulletMemory::Scope heap(nullptr);  // for the solvers' rows; threads of the pool have no other memory
   const int work = islands_.joints().size() + islands_.contacts().size() + islands_.bodies().size();

@@ -11,6 +11,7 @@
 #include "sim/bullet/bullet_memory.h"
 #include "sim/bullet/collision_filter.h"
 #include "sim/bullet/islands.h"
+#include "sim/bullet/kinematic_bodies.h"
 #include "sim/bullet/sleep.h"
 #include "sim/collision/broadphase.h"
 #include "sim/solver/direct_solver.h"
@@ -38,9 +39,9 @@ struct WorldParts {
 
 /// Joints and contacts of an island are solved in an order that depends on that island alone (joints in the order of
 /// their creation, contacts by the age of the parts), so an island moves bit-identically whether alone or among others.
-/// Bodies belong to the caller; they have no motion states and are not kinematic. They sleep (sleep.h) if
-/// SleepTracker::allow() permits it. Persistent data is allocated in the memory of the BulletMemory::Scope at
-/// construction. [sim]
+/// Bodies belong to the caller; they have no motion states, and none has Bullet's kinematic flag (see kinematic()).
+/// They sleep (sleep.h) if SleepTracker::allow() permits it. Persistent data is allocated in the memory of the
+/// BulletMemory::Scope at construction. [sim]
 class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
  public:
   BT_DECLARE_ALIGNED_ALLOCATOR();
@@ -67,6 +68,9 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   void wake_all();
   SleepTracker& sleep() { return sleep_; }
   const SleepTracker& sleep() const { return sleep_; }
+
+  /// Moves of static bodies during the next tick.
+  KinematicBodies& kinematic() { return kinematic_; }
 
   /// Sets which other objects this one may collide with, from the next step on.
   void set_filter(btCollisionObject& object, const CollisionFilter& filter);
@@ -117,6 +121,7 @@ class IslandWorld : private WorldParts, public btDiscreteDynamicsWorld {
   bool last_substep_ = false;
 
   SleepTracker sleep_{*this};
+  KinematicBodies kinematic_;
   btScalar step_length_ = 0;  // of the last substep, s
   btScalar tick_length_ = 0;
 

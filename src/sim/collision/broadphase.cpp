@@ -6,6 +6,7 @@
 
 #include "base/memory/prefetch.h"
 #include "sim/bullet/collision_filter.h"
+#include "sim/bullet/surface_motion.h"
 
 namespace limber::sim::collision {
 namespace {
@@ -107,7 +108,7 @@ bool proxies_may_collide(const btBroadphaseProxy& a, const btBroadphaseProxy& b)
 // Extends an AABB by the part of the object's motion in the step that exceeds the contact distance, so that contacts
 // that begin within the step are found before it.
 void extend_along_motion(const btCollisionObject& object, btScalar h, btVector3& low, btVector3& high) {
-  if (object.isStaticObject()) return;
+  if (object.isStaticObject() && !bullet::is_moving_static(object)) return;
   const btRigidBody* body = btRigidBody::upcast(&object);
   if (body == nullptr) return;
   const btVector3 motion = body->getLinearVelocity() * h;

@@ -69,12 +69,13 @@ Simplex::Feature Simplex::nearest_on_segment(int a, int b) const {
   return {2, {a, b}, {1 - t, t}};
 }
 
+// The products d1 to d6 decide as in Ericson's book.
 Simplex::Feature Simplex::nearest_on_triangle(int a, int b, int c) const {
   const Vec3 ab = at(b) - at(a);
   const Vec3 ac = at(c) - at(a);
   const double d1 = -glm::dot(ab, at(a));
   const double d2 = -glm::dot(ac, at(a));
-  if (d1 <= 0 && d2 <= 0) return {1, {a}, {1}};
+  if (std::max(d1, d2) <= 0) return {1, {a}, {1}};
   const double d3 = -glm::dot(ab, at(b));
   const double d4 = -glm::dot(ac, at(b));
   if (d3 >= 0 && d4 <= d3) return {1, {b}, {1}};
@@ -82,11 +83,11 @@ Simplex::Feature Simplex::nearest_on_triangle(int a, int b, int c) const {
   const double d6 = -glm::dot(ac, at(c));
   if (d6 >= 0 && d5 <= d6) return {1, {c}, {1}};
   const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return nearest_on_segment(a, b);
+  if (vc <= 0 && std::min(d1, -d3) >= 0) return nearest_on_segment(a, b);
   const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return nearest_on_segment(a, c);
+  if (vb <= 0 && std::min(d2, -d6) >= 0) return nearest_on_segment(a, c);
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return nearest_on_segment(b, c);
+  if (va <= 0 && std::min(d4 - d3, d5 - d6) >= 0) return nearest_on_segment(b, c);
   const double sum = va + vb + vc;
   return {3, {a, b, c}, {va / sum, vb / sum, vc / sum}};
 }

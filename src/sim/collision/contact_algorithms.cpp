@@ -274,8 +274,10 @@ class ConvexAlgorithm : public PairAlgorithm {
   }
 };
 
+// ellipsoids are custom shapes
 constexpr int kConvexShapes[] = {BOX_SHAPE_PROXYTYPE,     CONVEX_HULL_SHAPE_PROXYTYPE, SPHERE_SHAPE_PROXYTYPE,
-                                 CAPSULE_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE,        CYLINDER_SHAPE_PROXYTYPE};
+                                 CAPSULE_SHAPE_PROXYTYPE, CONE_SHAPE_PROXYTYPE,        CYLINDER_SHAPE_PROXYTYPE,
+                                 CUSTOM_CONVEX_SHAPE_TYPE};
 
 template <class Algorithm, class... Args>
 btCollisionAlgorithm* create(btCollisionAlgorithmConstructionInfo& info, Args&&... args) {

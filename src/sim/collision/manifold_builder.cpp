@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/bullet/surface_motion.h"
+
+#include "sim/bullet/surface_motion.h"
+
 namespace limber::sim::collision {
 namespace {
 
@@ -17,8 +21,9 @@ constexpr btScalar kRelativeMargin = 1.001F;
 /// A point matches one of the previous step within this many breaking thresholds.
 constexpr btScalar kMatchDistanceFactor = 4;
 
-const btRigidBody* dynamic_body(const btCollisionObject* object) {
-  return object->isStaticObject() ? nullptr : btRigidBody::upcast(object);
+// Null: a body at rest, because it is static.
+const btRigidBody* moving_body(const btCollisionObject* object) {
+  return object->isStaticObject() && !bullet::is_moving_static(*object) ? nullptr : btRigidBody::upcast(object);
 }
 
 // Upper bound of the speed of the body's points about its center, m/s. Uses the AABB, which is at least as large as the
@@ -29,10 +34,18 @@ btScalar rotation_speed(const btRigidBody& body) {
   return std::sqrt(body.getAngularVelocity().length2() * (box->m_aabbMax - box->m_aabbMin).length2());
 }
 
+// True if a static body moves so fast that it would pass the other one between two steps: nothing can stop it.
+bool must_predict(const btRigidBody* a, const btRigidBody* b, const btVector3& motion) {
+  if (a == nullptr || b == nullptr || a->isStaticObject() == b->isStaticObject()) return false;
+  const btScalar radius = (a->isStaticObject() ? b : a)->getCcdMotionThreshold();
+  return motion.length2() > radius * radius;
+}
+
 // Distance from a body up to which its contacts are predicted: its inner radius, which a slow body doesn't exceed in a
-// step; unlimited if that isn't set.
+// step; unlimited if that isn't set, or if nothing can stop the body.
 btScalar prediction_distance(const btRigidBody* body) {
   if (body == nullptr) return 0;
+  if (body->isStaticObject()) return BT_LARGE_FLOAT;
   const btScalar radius = body->getCcdMotionThreshold();
   return radius > 0 ? radius : BT_LARGE_FLOAT;
 }
@@ -53,16 +66,22 @@ void copy_warm_start(const btManifoldPoint& from, btManifoldPoint& to) {
 
 ManifoldBuilder::ManifoldBuilder(btPersistentManifold& manifold, btScalar h)
     : manifold_(manifold),
-      a_(dynamic_body(manifold.getBody0())),
-      b_(dynamic_body(manifold.getBody1())),
+      a_(moving_body(manifold.getBody0())),
+      b_(moving_body(manifold.getBody1())),
       h_(h),
       contact_distance_(std::min(kContactDistance, manifold.getContactBreakingThreshold())),
       max_rotation_distance_(contact_distance_),
       max_distance_(contact_distance_),
       speculative_(manifold.getContactProcessingThreshold() > 0) {
+  btVector3 motion(0, 0, 0);
+  if (a_ != nullptr) motion -= a_->getLinearVelocity() * h_;
+  if (b_ != nullptr) motion += b_->getLinearVelocity() * h_;
+  if (must_predict(a_, b_, motion)) {
+    speculative_ = true;
+    manifold_.setContactProcessingThreshold(BT_LARGE_FLOAT);
+  }
   if (!speculative_) return;
-  if (a_ != nullptr) relative_motion_ -= a_->getLinearVelocity() * h_;
-  if (b_ != nullptr) relative_motion_ += b_->getLinearVelocity() * h_;
+  relative_motion_ = motion;
   max_rotation_distance_ +=
       ((a_ != nullptr ? rotation_speed(*a_) : 0) + (b_ != nullptr ? rotation_speed(*b_) : 0)) * h_;
   // beyond that, a predicted contact would deflect bodies that miss each other; see bullet::ContinuousCollision

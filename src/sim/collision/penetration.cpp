@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace limber::sim::collision {
 namespace {
@@ -42,6 +43,8 @@ class Polytope {
   void add_vertex(const DifferencePoint& vertex) { vertices_[static_cast<std::size_t>(vertex_count_++)] = vertex; }
   void add_face(int a, int b, int c);
   bool insert(const DifferencePoint& vertex);
+  bool add_line();
+  bool add_triangle();
   int nearest_face() const;
 
   const ShapeDifference& shapes_;
@@ -61,11 +64,11 @@ Vec3 perpendicular(const Vec3& v) {
   return glm::normalize(glm::cross(v, axis));
 }
 
-bool Polytope::begin() {
-  const Vec3 axes[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+// The first edge: the longest extent along an axis.
+bool Polytope::add_line() {
   DifferencePoint first;
   DifferencePoint second;
-  for (const Vec3& axis : axes) {
+  for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)}) {
     const DifferencePoint low = shapes_.support(-axis);
     const DifferencePoint high = shapes_.support(axis);
     const double length = glm::length(high.difference - low.difference);
@@ -74,14 +77,17 @@ bool Polytope::begin() {
     first = low;
     second = high;
   }
-  if (!(size_ > 0)) return false;
   add_vertex(first);
   add_vertex(second);
+  return size_ > 0;
+}
+
+// The point farthest from the line.
+bool Polytope::add_triangle() {
   const Vec3 line = (at(1) - at(0)) / glm::length(at(1) - at(0));
-  // the point farthest from the line, then the one farthest from the triangle
+  const Vec3 across = perpendicular(line);
   double best = 0;
   DifferencePoint third;
-  const Vec3 across = perpendicular(line);
   for (const Vec3& direction : {across, -across, glm::cross(line, across), -glm::cross(line, across)}) {
     const DifferencePoint candidate = shapes_.support(direction);
     const double distance = glm::length(glm::cross(line, candidate.difference - at(0)));
@@ -89,8 +95,13 @@ bool Polytope::begin() {
     best = distance;
     third = candidate;
   }
-  if (best <= kFlatShare * size_) return false;
   add_vertex(third);
+  return best > kFlatShare * size_;
+}
+
+bool Polytope::begin() {
+  if (!add_line() || !add_triangle()) return false;
+  // the point farthest from the triangle
   const Vec3 normal = glm::normalize(glm::cross(at(1) - at(0), at(2) - at(0)));
   const DifferencePoint above = shapes_.support(normal);
   const DifferencePoint below = shapes_.support(-normal);
@@ -98,11 +109,12 @@ bool Polytope::begin() {
   const double depth = glm::dot(normal, at(0) - below.difference);
   if (std::max(height, depth) <= kFlatShare * size_) return false;
   add_vertex(height >= depth ? above : below);
-  const bool is_above = height >= depth;
-  add_face(0, is_above ? 2 : 1, is_above ? 1 : 2);
-  add_face(0, is_above ? 1 : 3, is_above ? 3 : 1);
-  add_face(1, is_above ? 2 : 3, is_above ? 3 : 2);
-  add_face(2, is_above ? 0 : 3, is_above ? 3 : 0);
+  // faces are counterclockwise as seen from outside
+  const auto [second, third] = height >= depth ? std::pair(2, 1) : std::pair(1, 2);
+  add_face(0, second, third);
+  add_face(0, third, 3);
+  add_face(third, second, 3);
+  add_face(second, 0, 3);
   return true;
 }
 

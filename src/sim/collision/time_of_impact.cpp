@@ -280,8 +280,14 @@ btScalar inner_radius(const btCollisionShape& shape) {
         smallest = std::min(smallest, inner_radius(*compound.getChildShape(i)));
       return smallest;
     }
-    default:
-      return 0;
+    default: {
+      if (!shape.isConvex()) return 0;
+      btVector3 low;
+      btVector3 high;
+      shape.getAabb(btTransform::getIdentity(), low, high);
+      const btVector3 half = (high - low) / 2;
+      return half[half.minAxis()];
+    }
   }
 }
 

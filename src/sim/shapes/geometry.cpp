@@ -5,6 +5,7 @@
 
 #include "model/mesh/mass_properties.h"
 #include "sim/bullet/bullet.h"
+#include "sim/shapes/ellipsoid_shape.h"
 
 namespace limber::sim {
 
@@ -36,6 +37,8 @@ std::shared_ptr<btCollisionShape> primitive_shape(const model::ShapeModel& m) {
       return std::make_shared<btSphereShape>(radius);
     case model::ShapeKind::box:
       return std::make_shared<btBoxShape>(bullet::to_bt(m.size * 0.5));
+    case model::ShapeKind::ellipsoid:
+      return std::make_shared<EllipsoidShape>(m.size * 0.5);
     case model::ShapeKind::cylinder:
       return std::make_shared<btCylinderShapeZ>(btVector3(radius, radius, half));
     case model::ShapeKind::capsule:

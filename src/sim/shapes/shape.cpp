@@ -37,7 +37,16 @@ constexpr double kMaxLength = 1e4;
 
 Result<void> check_length(double value, std::string_view shape, std::string_view dimension) {
   if (value >= kMinLength && value <= kMaxLength) return {};
-  return Error{fmt::format("a {} needs a {} of {} .. {} m, not {}", shape, dimension, kMinLength, kMaxLength, value)};
+  const char* const article = shape.front() == 'e' ? "an" : "a";
+  return Error{
+      fmt::format("{} {} needs a {} of {} .. {} m, not {}", article, shape, dimension, kMinLength, kMaxLength, value)};
+}
+
+Result<void> check_lengths(const Vec3& values, std::string_view shape, std::string_view dimension) {
+  for (int i = 0; i < 3; i++) {
+    if (const Result<void> ok = check_length(values[i], shape, dimension); !ok) return ok;
+  }
+  return {};
 }
 
 Result<void> first_error(Result<void> a, Result<void> b) { return a ? b : a; }
@@ -58,10 +67,9 @@ Result<void> check_shape(const model::ShapeModel& m) {
     case model::ShapeKind::sphere:
       return check_length(m.radius, "sphere", "radius");
     case model::ShapeKind::box:
-      for (int i = 0; i < 3; i++) {
-        if (const Result<void> ok = check_length(m.size[i], "box", "size"); !ok) return ok;
-      }
-      return {};
+      return check_lengths(m.size, "box", "size");
+    case model::ShapeKind::ellipsoid:
+      return check_lengths(m.size / 2.0, "ellipsoid", "radius");
     case model::ShapeKind::cylinder:
       return first_error(check_length(m.radius, "cylinder", "radius"), check_length(m.height, "cylinder", "height"));
     case model::ShapeKind::capsule:

@@ -67,7 +67,7 @@ class DirectSolver::Step {
   CoupledSystem coupled_{island, trees_, budget_};
   GyroscopicCorrection gyroscopes_{island, trees_};
   DriftCorrection drift_{island, trees_, coupled_.rows};
-  LockEnergy lock_energy_{island, trees_, drift_};
+  LockEnergy lock_energy_{island, trees_, coupled_.rows, drift_};
   SplitImpulse split_impulse_{island, trees_, coupled_.rows, coupled_.delassus, budget_};
   PositionCorrection position_correction_{island, trees_, budget_};
   IndexedArray<double> impulses_;
@@ -145,7 +145,9 @@ bool DirectSolver::Step::apply_corrections() {
 }
 
 bool DirectSolver::Step::iterate_corrections() {
-  const double min_drift = gyroscopes_.empty() ? DriftCorrection::kMinDrift : DriftCorrection::kMinFastDrift;
+  const double min_drift = !gyroscopes_.empty() ? DriftCorrection::kMinFastDrift
+                           : trees_.has_loops() ? DriftCorrection::kMinLoopDrift
+                                                : DriftCorrection::kMinDrift;
   bool solved = true;
   bool gyro_pending = true;
   for (int pass = 0; solved && (drift_.pending() || gyro_pending) && !budget_.exceeded(solve_cost_); ++pass) {
@@ -189,7 +191,8 @@ void DirectSolver::Step::write() {
 void DirectSolver::Step::correct_positions() {
   if (!island.info->m_splitImpulse || island.info->m_splitImpulseTurnErp <= 0) return;
   split_impulse_.apply();
-  if (drift_.leaves_errors()) position_correction_.apply();
+  // it predicts the poses of dynamic bodies only
+  if (drift_.leaves_errors() && !island.has_moving_static()) position_correction_.apply();
 }
 
 // Removes the warm-start impulses, which only the direct solver could have balanced, before the iterative solver

@@ -29,6 +29,7 @@ class DriftCorrection {
 
   static constexpr double kMinDrift = 1e-4;      ///< Smaller changes are ignored, m.
   static constexpr double kMinFastDrift = 1e-6;  ///< The same if bodies rotate fast: a spinning top would lose energy.
+  static constexpr double kMinLoopDrift = 1e-5;  ///< The same if joints close loops: no position correction follows.
 
  private:
   struct BodyMotion {  // motion of a body in the step, with the velocity found

@@ -38,6 +38,15 @@ struct Island {
   btSolverBody& body(int i) const { return pools->bodies[i]; }
   btRigidBody& rigid(int i) const { return *body(i).m_originalBody; }
   bool is_dynamic(int i) const { return body(i).m_invMass.x() > 0; }
+  /// True if a static body of a joint or contact moves.
+  bool has_moving_static() const {
+    const btVector3 zero(0, 0, 0);
+    for (int i = 0; i < pools->bodies.size(); ++i) {
+      const btSolverBody& b = body(i);
+      if (b.m_originalBody == nullptr && (b.m_linearVelocity != zero || b.m_angularVelocity != zero)) return true;
+    }
+    return false;
+  }
   /// Velocity at the start of the step.
   Spatial start_velocity(int i) const { return make_spatial(body(i).m_linearVelocity, body(i).m_angularVelocity); }
   /// Velocity that external forces give the body, before the solve.

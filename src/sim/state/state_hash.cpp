@@ -8,6 +8,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/bullet.h"
 #include "sim/gears/gear_list.h"
+#include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
@@ -30,6 +31,15 @@ void add_motion(NumberHash& numbers, const btRigidBody& rigid) {
   add_vector(numbers, rigid.getAngularVelocity());
 }
 
+// A part without mass is static by default, though the default of the property is dynamic: its share of the node's hash
+// is this, which is subtracted, so that a default adds nothing.
+std::uint64_t default_motion_hash(const Part& part) {
+  static const Property& property = Part::table().at("motion");
+  const double motion = part.body().store().values(part.id(), property)[0];
+  if (part.mass() > 0 || motion != static_cast<double>(PartMotion::fixed)) return 0;
+  return values_hash(Part::table().hashed_persistent().subspan(property.offset, 1), &motion);
+}
+
 }  // namespace
 
 std::uint64_t body_hash(const Body& body, std::uint64_t start) {
@@ -45,10 +55,11 @@ std::uint64_t body_hash(const Body& body, std::uint64_t start) {
   }
   for (const auto& part : body.parts()) {
     add_motion(numbers, part->rigid());
-    add_node(part->id());
+    numbers.add_word(node_hash(values, part->id()) - default_motion_hash(*part));
   }
   for (const auto& joint : body.joints()) add_node(joint->id());
   for (const auto& motor : body.motors()) add_node(motor->id());
+  for (const auto& sensor : body.sensors().list()) add_node(sensor->id());
   for (const PartPair& pair : body.pairs().list()) {
     numbers.add(static_cast<double>(pair.a), static_cast<double>(pair.b), pair.excluded() ? 1 : 0);
   }

@@ -84,6 +84,7 @@ void WorldTransaction::rollback() {
     }
   }
   world_.store().rollback();
+  world_.sensing().parts().invalidate_bodies();
   world_.requests() = requests_;
 }
 

@@ -18,8 +18,8 @@ namespace limber::sim {
 
 namespace {
 
-constexpr double kFilled = 0.8;       // fraction of the view that the objects fill
-constexpr double kMinDistance = 0.2;  // m
+constexpr double kFilled = 0.8;     // fraction of the view that the objects fill
+constexpr double kMinDistance = 4;  // multiple of the near clipping distance
 constexpr double kMinAspect = 4.0 / 3;
 
 void add_box(const Vec3& half, const Pose& pose, std::vector<FramedSphere>& out) {
@@ -38,6 +38,18 @@ void add_mesh(const model::MeshModel& mesh, const Pose& pose, std::vector<Framed
     high = glm::max(high, v);
   }
   add_box((high - low) / 2.0, pose * Pose{(low + high) / 2.0, Quat(1, 0, 0, 0)}, out);
+}
+
+void add_placed(std::span<const model::PlacedShape> shapes, const Pose& pose, std::vector<FramedSphere>& out) {
+  if (!is_finite(pose.position) || !is_finite(pose.rotation)) return;
+  for (const model::PlacedShape& placed : shapes) add_framed_shape(placed.shape, pose * placed.origin, out);
+}
+
+// Adds the visuals of the body's model; the first parts of the body are the links of the model.
+void add_visuals(const Body& body, std::vector<FramedSphere>& out) {
+  const std::vector<model::LinkModel>& links = body.model()->links;
+  for (std::size_t i = 0; i < std::min(links.size(), body.parts().size()); i++)
+    add_placed(links[i].visuals, body.parts()[i]->pose(), out);
 }
 
 // Returns the distance of the eye from the target at which the sphere is inside the planes of one axis. `side` and
@@ -59,6 +71,7 @@ void add_framed_shape(const model::ShapeModel& shape, const Pose& pose, std::vec
       for (const double end : {-0.5, 0.5}) out.push_back({pose * Vec3(0, 0, end * shape.height), shape.radius});
       return;
     case model::ShapeKind::box:
+    case model::ShapeKind::ellipsoid:
       return add_box(shape.size / 2.0, pose, out);
     case model::ShapeKind::cylinder:
     case model::ShapeKind::cone:
@@ -84,7 +97,7 @@ std::optional<FramedView> frame(std::span<const FramedSphere> spheres, const Vec
   const Vec3 up = glm::cross(back, right);
   const double vertical = kFilled * fixed::tan(shape.fovy * std::numbers::pi / 360);
   const double horizontal = vertical * shape.aspect;
-  double distance = kMinDistance;
+  double distance = kMinDistance * shape.near;
   for (const FramedSphere& sphere : spheres) {
     const Vec3 at = sphere.center - target;
     const double ahead = -glm::dot(at, back);
@@ -102,12 +115,11 @@ std::vector<FramedSphere> framed_bodies(const World& world) {
   const bool any_moves = std::ranges::any_of(world.bodies(), can_move);
   for (const auto& body : world.bodies()) {
     if (!body->in_world() || (any_moves && !can_move(body))) continue;
+    const std::size_t before = spheres.size();
     for (const auto& part : body->parts()) {
-      const Pose pose = part->pose();
-      if (!is_finite(pose.position) || !is_finite(pose.rotation) || part->geometry() == nullptr) continue;
-      for (const model::PlacedShape& placed : part->geometry()->placed)
-        add_framed_shape(placed.shape, pose * placed.origin, spheres);
+      if (part->geometry() != nullptr) add_placed(part->geometry()->placed, part->pose(), spheres);
     }
+    if (spheres.size() == before && body->model() != nullptr) add_visuals(*body, spheres);
   }
   return spheres;
 }
@@ -117,7 +129,7 @@ void frame_scene(World& world) {
   if (camera.pose_is_set()) return;
   const auto value = [&](const char* name) { return world.store().values(camera.id(), Camera::table().at(name))[0]; };
   const double aspect = value("aspect") > 0 ? value("aspect") : kMinAspect;
-  const auto view = frame(framed_bodies(world), camera.eye() - camera.target(), {value("fovy"), aspect});
+  const auto view = frame(framed_bodies(world), camera.eye() - camera.target(), {value("fovy"), aspect, value("near")});
   if (!view) return;
   // beyond half of the far clipping distance, the objects would be hidden by the fog
   const Vec3 offset = view->eye - view->target;

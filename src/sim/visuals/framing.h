@@ -24,10 +24,11 @@ struct FramedView {
   Vec3 target{0};
 };
 
-/// The opening of a camera.
+/// The opening and near clipping distance of a camera.
 struct FrameShape {
-  double fovy = 40;   ///< Vertical field of view, degrees.
-  double aspect = 1;  ///< Width / height.
+  double fovy = 40;    ///< Vertical field of view, degrees.
+  double aspect = 1;   ///< Width / height.
+  double near = 0.05;  ///< Near clipping distance, m; the view keeps four times this distance.
 };
 
 /// Adds spheres that enclose a shape at this pose: its corners, or the ends of a capsule. A plane adds none.
@@ -37,7 +38,8 @@ void add_framed_shape(const model::ShapeModel& shape, const Pose& pose, std::vec
 /// nothing without spheres. Its target is the center of their bounding box. The result depends on the arguments only.
 std::optional<FramedView> frame(std::span<const FramedSphere> spheres, const Vec3& direction, const FrameShape& shape);
 
-/// Returns spheres around the bodies that can move or, if there are none, around all. [sim]
+/// Returns spheres around the bodies that can move or, if there are none, around all. Bodies without collision shapes
+/// have those of their visuals. [sim]
 std::vector<FramedSphere> framed_bodies(const World& world);
 
 /// Makes a view of these bodies the default view of the camera, unless its pose was set or there are none. The

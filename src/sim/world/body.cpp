@@ -10,6 +10,9 @@
 #include "base/memory/archive.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
+#include "sim/motion/part_motion.h"
+#include "sim/sensors/readouts.h"
+#include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -65,10 +68,12 @@ void read_linear_velocity(const Body& body, double* out) {
   put(out, body.parts().empty() ? Vec3(0) : body.root()->linear_velocity());
 }
 
+// A velocity of the body moves the static parts only if all are static: it doesn't move the base of an arm.
+bool gets_body_velocity(const Part& part) { return part.motion() != PartMotion::fixed || part.body().is_static(); }
+
 void write_linear_velocity(Body& body, const double* in) {
-  if (body.is_static()) return body.warnings().warn_static_velocity("its parts are");
   for (const auto& part : body.parts()) {
-    if (!part->is_static()) part->set_velocity(vec3_at(in), part->angular_velocity());
+    if (gets_body_velocity(*part)) part->set_velocity(vec3_at(in), part->angular_velocity());
   }
 }
 
@@ -78,14 +83,24 @@ void read_angular_velocity(const Body& body, double* out) {
 
 void write_angular_velocity(Body& body, const double* in) {
   if (body.parts().empty()) return;
-  if (body.is_static()) return body.warnings().warn_static_velocity("its parts are");
   const Vec3 omega = vec3_at(in);
   const Vec3 pivot = body.root()->center();
   const Vec3 velocity = body.root()->linear_velocity();
   for (const auto& part : body.parts()) {
-    if (part->is_static()) continue;
+    if (!gets_body_velocity(*part)) continue;
     part->set_velocity(velocity + glm::cross(omega, part->center() - pivot), omega);
   }
+}
+
+void read_motion(const Body& body, double* out) {
+  static const Property& property = Part::table().at("motion");
+  out[0] = body.parts().empty() ? 0 : body.store().values(body.root()->id(), property)[0];
+}
+
+// Parts that reject it (planes, and parts without mass to be dynamic) stay as they are.
+void write_motion(Body& body, const double* in) {
+  static const Property& property = Part::table().at("motion");
+  for (const auto& part : body.parts()) (void)body.store().set(part->id(), property, {in, 1});
 }
 
 Result<void> reset_body(Body& body, std::span<const double>) {
@@ -119,6 +134,11 @@ const PropertyTable& Body::table() {
               vec3("angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
                    "Angular velocity of the root; setting it rotates the whole body about the root. From 1000 rad/s of "
                    "tumbling on, the stability check restores the body."))),
+          state(computed<&read_motion, &write_motion>(
+              choice("motion", {"dynamic", "kinematic", "static"}, 0,
+                     "How the root moves; setting it sets that of all parts (a part without mass can't be dynamic)."))),
+          on_change<&apply_gravity_factor>(
+              number("gravity_factor", "", 1, -100, 100, "Factor on gravity: 0 floats, negative values rise.")),
           on_change<&apply_self_collision>(boolean(
               "self_collision", true,
               "Whether its parts collide with each other, except for pairs connected by a joint and excluded_pairs.")),
@@ -126,6 +146,21 @@ const PropertyTable& Body::table() {
               "can_sleep", true,
               "Whether its parts may fall asleep at rest; sleeping parts cost nothing until something acts on them.")),
           computed<&read_asleep>(readout(boolean("asleep", false, "True if all its movable parts sleep."))),
+          computed<&read_body_mass>(
+              readout(number("mass", "kg", 0, 0, kUnbounded, "Total mass of its movable parts."))),
+          computed<&read_center_of_mass>(
+              readout(vec3("center_of_mass", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
+                           "Center of mass of its movable parts, world, after the last tick."))),
+          computed<&read_body_momentum>(
+              readout(vec3("momentum", "kg·m/s", {0, 0, 0}, -kUnbounded, kUnbounded, "Total momentum, world axes."))),
+          computed<&read_body_angular_momentum>(
+              readout(vec3("angular_momentum", "kg·m²/s", {0, 0, 0}, -kUnbounded, kUnbounded,
+                           "Angular momentum about its center of mass, world axes."))),
+          computed<&read_body_kinetic_energy>(
+              readout(number("kinetic_energy", "J", 0, 0, kUnbounded, "Energy of its motion and rotation."))),
+          computed<&read_body_potential_energy>(
+              readout(number("potential_energy", "J", 0, -kUnbounded, kUnbounded,
+                             "Energy in the gravity field; 0 at the world's origin."))),
           transient(state(on_change<&Body::apply_enabled>(
               boolean("enabled", true,
                       "False: removed from the simulation, as after the second instability; reset enables it.")))),
@@ -141,11 +176,13 @@ Body::Body(World& world, NodeId group, std::string name)
       parts_(store(), store().add_group(id_, "part")),
       joints_(store(), store().add_group(id_, "joint")),
       motors_(store(), store().add_group(id_, "motor")),
+      sensors_(std::make_unique<SensorList>(*this)),
       behaviors_(store(), store().add_group(id_, "behavior")) {}
 
 Body::~Body() {
   world_.behaviors().on_body_destroyed(*this);
   // joints detach from their parts before the parts are destroyed
+  sensors_->clear();
   motors_.objects().clear();
   joints_.objects().clear();
   parts_.objects().clear();
@@ -204,7 +241,7 @@ Result<Joint*> Body::add_joint(std::string name, Part& parent, Part& child, mode
   if (&parent.body() != this || &child.body() != this) return fault("both parts must be of this body");
   if (!is_finite(position) || !is_finite(axis)) return fault("position and axis must be numbers");
   if (glm::length(axis) < 1e-9) return fault("the axis must not be zero");
-  if (parent.is_static() && child.is_static()) return fault("both parts are static; one must have mass");
+  if (parent.mass() == 0 && child.mass() == 0) return fault("both parts are static; one must have mass");
   // z of the joint's frame is the axis; an upright axis keeps the world's orientation
   const Vec3 z = normalized(axis);
   const Vec3 reference = std::abs(z.x) < 0.9 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
@@ -259,6 +296,7 @@ void Body::set_enabled(bool on) {
 void Body::apply_enabled() {
   if (enabled() == state_.in_world) return;
   state_.in_world = enabled();
+  world_.sensing().parts().invalidate_bodies();
   if (state_.in_world) {
     state_.joints_dirty = true;  // World::flush() then adds it to Bullet's world and updates its joints
   } else {
@@ -277,10 +315,7 @@ void Body::add_to_world() {
   for (Joint* follower : followers_) follower->add_mimic_gear();
 }
 
-bool Body::self_collision() const {
-  static const Property& property = table().at("self_collision");
-  return store().values(id_, property)[0] != 0;
-}
+std::uint32_t Body::structure_version() const { return structure_version_ + world_.kinematics().motion_changes(); }
 
 bool Body::can_sleep() const {
   static const Property& property = table().at("can_sleep");
@@ -324,6 +359,7 @@ void Body::serialize(Archive& archive) {
   for (const auto& part : parts()) part->serialize(archive);
   for (const auto& joint : joints()) joint->serialize(archive);
   for (const auto& motor : motors()) motor->serialize(archive);
+  sensors_->serialize(archive);
 }
 
 bool Body::is_static() const {

@@ -22,6 +22,7 @@ namespace limber::sim {
 class Joint;
 class Motor;
 class Part;
+class SensorList;
 class Shape;
 class World;
 
@@ -53,6 +54,7 @@ class Body {
   Part* find_part(std::string_view name) const { return parts_.find(name); }
   Joint* find_joint(std::string_view name) const { return joints_.find(name); }
   Motor* find_motor(std::string_view name) const { return motors_.find(name); }
+  SensorList& sensors() const { return *sensors_; }
   BodyBehaviors& behaviors() { return behaviors_; }
   const BodyBehaviors& behaviors() const { return behaviors_; }
   /// The model that it was imported from, or null; contains the frames of merged links.
@@ -74,7 +76,6 @@ class Body {
   const PartPairs& pairs() const { return pairs_; }
   BodyRecovery& recovery() { return recovery_; }
   BodyWarnings& warnings() { return warnings_; }
-  bool self_collision() const;
   /// True if it has parts and none of them can move.
   bool is_static() const;
 
@@ -102,8 +103,9 @@ class Body {
 
   /// Joints that are coupled to a leader (URDF mimic), in order of creation.
   std::span<Joint* const> followers() const { return followers_; }
-  /// Counts additions of parts, joints and motors: behaviors then resolve their targets again.
-  std::uint32_t structure_version() const { return structure_version_; }
+  /// Counts additions of parts, joints and motors, and changes of the motion of parts: behaviors then resolve their
+  /// targets again.
+  std::uint32_t structure_version() const;
 
   // Construction of an empty body; called by World.
   void build(const std::shared_ptr<const model::BodyModel>& model, const BuildOptions& options);
@@ -126,6 +128,7 @@ class Body {
   ObjectList<Part> parts_;
   ObjectList<Joint> joints_;
   ObjectList<Motor> motors_;
+  std::unique_ptr<SensorList> sensors_;
   std::vector<Joint*> followers_;
   BodyBehaviors behaviors_;
   std::uint32_t structure_version_ = 0;

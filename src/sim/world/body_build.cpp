@@ -7,6 +7,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/gears/gear.h"
+#include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -30,11 +31,15 @@ void set_up_motor(Motor& motor, const model::JointModel& m, std::optional<bool> 
   const bool use_servo = servo.value_or(m.driven) && m.type != model::JointType::floating &&
                          m.type != model::JointType::planar && !joint.spec().mimic;
   if (!use_servo) motor.set_mode(MotorMode::off);
-  if (m.stiffness <= 0 || servo) return;
+  if (m.spring.stiffness <= 0 || (servo && !m.driven)) return;
   const std::string side = linear ? "linear" : "angular";
-  store.mutable_values(motor.id(), Motor::table().at(side + "_spring_stiffness"))[2] = m.stiffness;
-  store.mutable_values(motor.id(), Motor::table().at(side + "_spring_rest_length"))[2] = m.rest;
-  motor.set_mode(MotorMode::spring);
+  store.mutable_values(motor.id(), Motor::table().at(side + "_spring_stiffness"))[2] = m.spring.stiffness;
+  store.mutable_values(motor.id(), Motor::table().at(side + "_spring_rest_length"))[2] = m.spring.rest;
+  if (m.driven) {
+    store.mutable_values(motor.id(), Motor::table().at(side + "_spring_damping"))[2] = m.spring.damping;
+  } else {
+    motor.set_mode(MotorMode::spring);
+  }
 }
 
 }  // namespace
@@ -61,11 +66,20 @@ void Body::build(const std::shared_ptr<const model::BodyModel>& model, const Bui
     Part& parent = *parts()[static_cast<std::size_t>(m.parent)];
     Part& child = *parts()[static_cast<std::size_t>(m.child)];
     Joint& joint = joints_.add(std::make_unique<Joint>(*this, joints_.group(), m.name, parent, child, spec));
+    store().mutable_values(joint.id(), Joint::table().at("armature"))[0] = m.armature;
     joint.apply_limits();
     joint.constraint().reset(joint.own_axis() == 5 ? Vec3(0, 0, m.start) : Vec3(0));
     joint.publish();
     if (m.type == model::JointType::fixed) continue;
     set_up_motor(motors_.add(std::make_unique<Motor>(joint, motors_.group())), m, options.servo_motors);
+  }
+  for (const model::JointModel& m : model->loops) {
+    const JointSpec spec{m.type, m.frame_in_parent, m.frame_in_child, m.limited, m.lower, m.upper, m.friction, {}};
+    Joint& joint = joints_.add(std::make_unique<Joint>(*this, joints_.group(), m.name,
+                                                       *parts()[static_cast<std::size_t>(m.parent)],
+                                                       *parts()[static_cast<std::size_t>(m.child)], spec));
+    joint.apply_limits();
+    joint.update_from_parts();
   }
   followers_ = couple_mimic_joints(*this);
 }
@@ -107,6 +121,10 @@ void Body::build_copy(const Body& source) {
     if (from->motor() == nullptr) continue;
     const Motor& motor = motors_.add(std::make_unique<Motor>(joint, motors_.group()));
     copy_values(from->motor()->id(), motor.id(), Motor::table());
+  }
+  for (const auto& from : source.sensors().list()) {
+    const Sensor& sensor = sensors_->add_copy(*from, *find_part(from->part().name()));
+    copy_values(from->id(), sensor.id(), Sensor::table(from->kind()));
   }
   followers_ = couple_mimic_joints(*this);
   world_.behaviors().copy(source, *this);

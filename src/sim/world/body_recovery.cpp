@@ -7,6 +7,8 @@
 #include "base/memory/archive.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
+#include "sim/bullet/surface_motion.h"
+#include "sim/motion/part_motion.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/part.h"
@@ -30,7 +32,7 @@ void BodyRecovery::reset() {
   WorldTransaction& transaction = body_.world().transaction();
   if (transaction.first_in_call(saved_in_call_)) transaction.save_fields(state_.good_pose_count, state_.restored_once);
   for (const auto& part : body_.parts()) {
-    part->set_pose(part->start_pose());
+    teleport_part(*part, part->start_pose());
     part->set_velocity(Vec3(0), Vec3(0));
     part->clear_forces();
   }
@@ -60,10 +62,11 @@ bool BodyRecovery::restore_good_pose(const Part& part, const std::string& instab
   const std::string cause = state_.restored_this_tick ? "" : likely_cause(body_, part);
   for (std::size_t i = 0; i < body_.parts().size(); i++) {
     Part& member = *body_.parts()[i];
+    if (bullet::is_moving_static(member.rigid())) continue;
     member.set_pose(i < state_.good_pose_count ? state_.good_poses[i] : member.start_pose());
     member.set_velocity(Vec3(0), Vec3(0));
-    member.apply_pose();
-    member.apply_velocity();
+    apply_part_pose(member);
+    apply_part_velocity(member);
     member.wake();  // together with the parts that touch it, since its contacts are removed below
     // the force that caused the instability would do so again in this tick's next substep
     member.rigid().clearForces();

@@ -20,10 +20,8 @@ namespace limber::sim {
 
 void BodyWarnings::warn_static_velocity(std::string_view subject) {
   if (std::exchange(state_.static_velocity, true)) return;
-  log_warning(
-      "body '{}': {} static (mass 0), so a velocity has no effect; ignored (reported once). Give a mass, or set the "
-      "position.",
-      body_.name(), subject);
+  log_warning("body '{}': {} can't move, so a velocity has no effect; ignored (reported once). Use a box instead.",
+              body_.name(), subject);
 }
 
 void BodyWarnings::note(const Part& part) { is_clamped_ = is_clamped_ || bullet::clamped_speed(part.rigid()) > 0; }

@@ -17,7 +17,7 @@ class BodyWarnings {
  public:
   explicit BodyWarnings(const Body& body) : body_(body) {}
 
-  /// Warns, once per body, that setting a velocity has no effect. `subject` begins the sentence: "part 'floor' is".
+  /// Warns, once per body, that setting a velocity has no effect. `subject` begins the sentence.
   void warn_static_velocity(std::string_view subject);
   /// Notes the problems of a part or joint of the body when its readouts are published. [any, one thread per body]
   void note(const Part& part);

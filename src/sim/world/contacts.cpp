@@ -30,7 +30,8 @@ Contacts::Pair& Contacts::pair_of(Part* a, Part* b) {
 }
 
 void Contacts::begin_tick() {
-  state_.events.clear();
+  for (std::vector<ContactEvent>& events : state_.events) events.clear();
+  points_.begin_tick();
   for (Pair& pair : state_.pairs) {
     pair.touched_before = pair.touching && !pair.event_pending;
     pair.touching = false;
@@ -66,6 +67,8 @@ void Contacts::collect_points(btPersistentManifold& manifold) {
     btManifoldPoint& point = manifold.getContactPoint(k);
     if (point.getDistance() > 0 && point.getAppliedImpulse() <= 0) continue;
     pair_of(a, b).add(point);
+    // beyond this distance the solver has no row for the point, whose impulse is that of an earlier step
+    if (point.getDistance() <= manifold.getContactProcessingThreshold()) points_.add(*a, *b, point);
   }
 }
 
@@ -73,15 +76,31 @@ void Contacts::collect(btDispatcher& dispatcher) {
   if (state_.reporting <= 0) return;
   for (Pair& pair : state_.pairs) pair.closing = false;
   for (int i = 0; i < dispatcher.getNumManifolds(); i++) collect_points(*dispatcher.getManifoldByIndexInternal(i));
+  points_.end_substep();
 }
 
-void Contacts::end_tick() {
+void Contacts::add_event(ContactPhase phase, const Pair& pair, double impulse) {
+  std::vector<ContactEvent>& events = state_.events[static_cast<std::size_t>(phase)];
+  if (pair.a->reports_contacts()) events.push_back({pair.a->id(), pair.b->id(), impulse, pair.position});
+  if (pair.b->reports_contacts()) events.push_back({pair.b->id(), pair.a->id(), impulse, pair.position});
+}
+
+void Contacts::end_tick(const Store& store, double seconds) {
+  points_.end_tick(store, seconds);
   for (Pair& pair : state_.pairs) {
-    if (pair.touched_before || (!pair.touching && !pair.event_pending)) continue;
+    if (pair.touched_before) {
+      if (!pair.touching) {
+        add_event(ContactPhase::end, pair, 0);
+      } else {
+        add_event(ContactPhase::stay, pair, points_.impulse_between(pair.a->id(), pair.b->id()));
+      }
+      continue;
+    }
+    if (!pair.touching && !pair.event_pending) continue;
     pair.event_pending = pair.closing && !pair.event_pending;
     if (pair.event_pending) continue;
-    if (pair.a->reports_contacts()) state_.events.push_back({pair.a->id(), pair.b->id(), pair.impulse, pair.position});
-    if (pair.b->reports_contacts()) state_.events.push_back({pair.b->id(), pair.a->id(), pair.impulse, pair.position});
+    add_event(ContactPhase::begin, pair, pair.impulse);
+    if (!pair.touching) add_event(ContactPhase::end, pair, 0);
   }
   std::erase_if(state_.pairs,
                 [](const Pair& pair) { return !pair.touching && !pair.touched_before && !pair.event_pending; });
@@ -93,7 +112,7 @@ void Contacts::remove_part(const Part& part) {
 
 void Contacts::serialize(Archive& archive) {
   auto& [reporting, pairs, events] = state_;
-  archive.serialize_all(reporting, pairs, events);
+  archive.serialize_all(reporting, pairs, events[0], events[1], events[2], points_);
 }
 
 }  // namespace limber::sim

@@ -74,7 +74,7 @@ void ForceAccumulators::prefetch_ahead(std::size_t index) const {
   };
   if (index + 3 * kAhead < pending_.size()) prefetch_wrench(pending_[index + 3 * kAhead]);
   if (const Part* const far = part(2 * kAhead); far != nullptr) prefetch(far, sizeof(Part));
-  if (const Part* const near = part(kAhead); near != nullptr) Part::prefetch_rigid_body(near);
+  if (const Part* const near = part(kAhead); near != nullptr) prefetch(&near->rigid(), sizeof(btRigidBody));
 }
 
 void ForceAccumulators::apply() {

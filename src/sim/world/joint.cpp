@@ -9,6 +9,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
+#include "sim/sensors/readouts.h"
 #include "sim/world/body.h"
 #include "sim/world/motor.h"
 #include "sim/world/part.h"
@@ -38,6 +39,7 @@ const JointReadouts& joint_readouts() {
 
 struct LimitProperties {
   std::array<const Property*, 2> lower, upper, stop_erp, stop_cfm;  // linear, angular
+  const Property* armature;
 };
 
 const LimitProperties& limit_properties() {
@@ -45,7 +47,8 @@ const LimitProperties& limit_properties() {
   static const LimitProperties found{{at("linear_lower_limit"), at("angular_lower_limit")},
                                      {at("linear_upper_limit"), at("angular_upper_limit")},
                                      {at("linear_stop_erp"), at("angular_stop_erp")},
-                                     {at("linear_stop_cfm"), at("angular_stop_cfm")}};
+                                     {at("linear_stop_cfm"), at("angular_stop_cfm")},
+                                     at("armature")};
   return found;
 }
 
@@ -105,6 +108,10 @@ const PropertyTable& Joint::table() {
           stop_property("angular_stop_erp", "", 0.2,
                         "Share of the error of a lock or limit corrected per substep, about the axis."),
           stop_property("angular_stop_cfm", "rad/(N·m)", 0, "Compliance of locks and limits about the axis."),
+          on_change<&Joint::apply_limits>(
+              number("armature", "kg | kg·m²", 0, 0, 1e6,
+                     "Inertia of the motor's rotor along or about the own axis, as it acts on the joint (with a gear, "
+                     "times the square of its ratio); it adds to that of the parts.")),
           transient(
               hashed(readout(number("value", "m | rad", 0, -kUnbounded, kUnbounded, "Position of the own axis.")))),
           transient(
@@ -119,6 +126,14 @@ const PropertyTable& Joint::table() {
           transient(hashed(readout(vec3("position", "m", {0, 0, 0}, -kUnbounded, kUnbounded,
                                         "Position of the joint on the parent, world.")))),
           transient(hashed(readout(quat("rotation", "Rotation of the child's joint frame, world: x y z w.")))),
+          computed<&read_reaction_force>(readout(
+              vec3("reaction_force", "N", {0, 0, 0}, -kUnbounded, kUnbounded,
+                   "Force of the parent on the child at the joint, joint's frame on the parent, mean of the last "
+                   "tick."))),
+          computed<&read_reaction_torque>(readout(
+              vec3("reaction_torque", "N·m", {0, 0, 0}, -kUnbounded, kUnbounded,
+                   "Torque of the parent on the child about the joint, joint's frame on the parent, mean of the last "
+                   "tick."))),
           computed<&Joint::read_axis>(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "Direction of the own axis, world."))),
       });
   return table;
@@ -207,6 +222,7 @@ void Joint::apply_limits() {
     settings.stop_erp = value_of(limit_properties().stop_erp);
     settings.stop_cfm = value_of(limit_properties().stop_cfm);
     settings.friction = axis == own_axis() ? static_cast<float>(spec_.friction) : 0;
+    settings.armature = axis == own_axis() ? static_cast<float>(store.values(id_, *limit_properties().armature)[0]) : 0;
     if (!(settings == constraint_->axis(axis))) wake();
     constraint_->set_axis(axis, settings);
     if (!settings.locked()) open |= 1u << axis;

@@ -21,8 +21,8 @@ using namespace properties;
 // Properties that exist for linear and for angular axes.
 struct AxisProperties {
   std::array<const Property*, 2> active, velocity, max_force, servo_active, servo_position, spring_active, rest,
-      stiffness, damping;
-  const Property *bounce, *passive_damping, *smoothing;
+      stiffness, damping, torque_active, torque;
+  const Property *bounce, *passive_damping, *smoothing, *no_load_speed;
 };
 
 const AxisProperties& axis_properties() {
@@ -36,9 +36,12 @@ const AxisProperties& axis_properties() {
                                     {at("linear_spring_rest_length"), at("angular_spring_rest_length")},
                                     {at("linear_spring_stiffness"), at("angular_spring_stiffness")},
                                     {at("linear_spring_damping"), at("angular_spring_damping")},
+                                    {at("linear_force_active"), at("angular_torque_active")},
+                                    {at("linear_force"), at("angular_torque")},
                                     at("bounce"),
                                     at("damping"),
-                                    at("target_smoothing")};
+                                    at("target_smoothing"),
+                                    at("no_load_speed")};
   return found;
 }
 
@@ -83,6 +86,14 @@ void add_axes(std::vector<Property>& out, const std::string& side, bool angular)
   out.push_back(target_property(side + "_spring_rest_length", length, "Rest position of a spring " + where + "."));
   out.push_back(numbers_property(side + "_spring_stiffness", stiffness, 0, 0, 1e6, "Spring stiffness " + where + "."));
   out.push_back(numbers_property(side + "_spring_damping", damping, 0, 0, 1e6, "Spring damping " + where + "."));
+  const std::string load = angular ? "torque" : "force";
+  out.push_back(flags_property(side + "_" + load + "_active",
+                               "Given " + load + " " + where + "; it replaces spin and servo, a spring replaces it."));
+  Property given =
+      target_property(side + "_" + load, force, "The given " + load + " " + where + ", up to max_" + side + "_force.");
+  given.min = -1e9;
+  given.max = 1e9;
+  out.push_back(std::move(given));
   Property stiff = applied_readout(side + "_spring_stiffness_applied", stiffness,
                                    "Stiffness in effect " + where + ", capped for stability.");
   Property damp = applied_readout(side + "_spring_damping_applied", damping, "Spring damping in effect " + where + ".");
@@ -97,8 +108,9 @@ void add_axes(std::vector<Property>& out, const std::string& side, bool angular)
 const PropertyTable& Motor::table() {
   static const PropertyTable table = [] {
     std::vector<Property> list;
-    list.push_back(validated_by<&Motor::validate_own_axis>(state(computed<&Motor::read_mode, &Motor::write_mode>(choice(
-        "mode", {"off", "spin", "servo", "spring"}, 2, "Mode of the own axis; setting it sets the three flags.")))));
+    list.push_back(validated_by<&Motor::validate_own_axis>(state(computed<&Motor::read_mode, &Motor::write_mode>(
+        choice("mode", {"off", "spin", "servo", "spring", "torque"}, 2,
+               "Mode of the own axis; setting it sets the axis's four flags.")))));
     list.push_back(validated_by<&Motor::validate_own_axis>(state(computed<&Motor::read_target, &Motor::write_target>(
         number("target", "m | rad", 0, -1e4, 1e4,
                "Target of the own axis's servo or spring; full turns count: 20π is ten.")))));
@@ -106,6 +118,14 @@ const PropertyTable& Motor::table() {
         number("speed", "m/s | rad/s", 0, -1e4, 1e4,
                "Speed of the own axis's spin; maximal speed of its servo. From 500 m/s on, the stability check "
                "restores the body.")))));
+    list.push_back(
+        validated_by<&Motor::validate_own_axis>(state(computed<&Motor::read_target_torque, &Motor::write_target_torque>(
+            number("target_torque", "N | N·m", 0, -1e9, 1e9,
+                   "Torque or force of the own axis in mode torque, up to its maximal force.")))));
+    list.push_back(on_change<&Motor::apply_axes>(
+        number("no_load_speed", "m/s | rad/s", 0, 0, 1e4,
+               "Speed of the own axis at which its motor has no force left: the maximal force in the direction of "
+               "motion decreases linearly from rest to this speed. 0: it doesn't depend on the speed.")));
     list.push_back(on_change<&Motor::apply_axes>(number(
         "bounce", "", 0, 0, 1, "Restitution of limits: after an impact at speed v the axis has speed −bounce·v.")));
     list.push_back(on_change<&Motor::apply_axes>(
@@ -154,6 +174,7 @@ MotorMode Motor::mode(int axis) const {
   const double* persistent = std::as_const(joint_.body().store()).persistent_block(id_) + axis % 3;
   const auto half = static_cast<std::size_t>(axis / 3);
   if (persistent[properties.spring_active[half]->offset] != 0) return MotorMode::spring;
+  if (persistent[properties.torque_active[half]->offset] != 0) return MotorMode::torque;
   if (persistent[properties.active[half]->offset] == 0) return MotorMode::off;
   return persistent[properties.servo_active[half]->offset] != 0 ? MotorMode::servo : MotorMode::spin;
 }
@@ -175,6 +196,13 @@ void Motor::set_mode(MotorMode mode) {
   set_own_axis(*properties.active[0], *properties.active[1],
                mode == MotorMode::spin || mode == MotorMode::servo ? 1 : 0);
   set_own_axis(*properties.servo_active[0], *properties.servo_active[1], mode == MotorMode::servo ? 1 : 0);
+  // written only if it changes, so that scenes without this mode never set it
+  const bool torque = mode == MotorMode::torque;
+  const int axis = joint_.own_axis();
+  if (axis < 0) return;
+  const Property& active = *properties.torque_active[static_cast<std::size_t>(axis / 3)];
+  if ((joint_.body().store().values(id_, active)[axis % 3] != 0) != torque)
+    set_own_axis(*properties.torque_active[0], *properties.torque_active[1], torque ? 1 : 0);
 }
 
 void Motor::set_target(double target) {
@@ -227,6 +255,8 @@ void Motor::apply_axes() {
     settings.max_force = value_of(properties.max_force);
     settings.stiffness = value_of(properties.stiffness);
     settings.spring_damping = value_of(properties.damping);
+    settings.no_load_speed =
+        axis == joint_.own_axis() ? static_cast<float>(store.values(id_, *properties.no_load_speed)[0]) : 0;
     if (!(settings == constraint_.axis(axis))) joint_.wake();
     constraint_.set_axis(axis, settings);
     if (mode(axis) == MotorMode::spring && value_of(properties.active) != 0) warn_contradiction(axis);
@@ -270,7 +300,8 @@ bool Motor::update_targets() {
     changed |= constraint_.set_target(
         axis, holding ? state_.held_position[bullet::at(axis)] : values[properties.servo_position[half]->offset],
         values[properties.rest[half]->offset],
-        holding ? Panic::kTerminalSpeed : values[properties.velocity[half]->offset]);
+        holding ? Panic::kTerminalSpeed : values[properties.velocity[half]->offset],
+        values[properties.torque[half]->offset]);
   }
   return changed;
 }
@@ -290,7 +321,9 @@ void Motor::warn_capped() {
         store.values(id_, *axis_properties().stiffness[static_cast<std::size_t>(axis / 3)])[axis % 3];
     if (mode(axis) != MotorMode::spring || !joint_.is_open(axis)) continue;
     if (constraint_.drives().stiffness_applied(axis) >= 0.999 * requested) continue;
-    const double h = std::sqrt(constraint_.pose().effective_inertia(axis) / (16 * requested));
+    const double h =
+        std::sqrt((constraint_.pose().effective_inertia(axis) + static_cast<double>(constraint_.axis(axis).armature)) /
+                  (16 * requested));
     const double substeps = std::ceil(joint_.body().world().timestep() / std::max(h, 1e-9));
     log_warning(
         "motor '{}/{}': spring stiffness {} is capped at {:.4g} for stability; about {} substeps would allow it",
@@ -352,6 +385,16 @@ void Motor::read_target(double* out) const {
 }
 
 void Motor::write_target(const double* in) { set_target(in[0]); }
+
+void Motor::read_target_torque(double* out) const {
+  const int axis = joint_.own_axis();
+  const auto& torque = axis_properties().torque;
+  out[0] = axis < 0 ? 0 : joint_.body().store().values(id_, *torque[static_cast<std::size_t>(axis / 3)])[axis % 3];
+}
+
+void Motor::write_target_torque(const double* in) {
+  set_own_axis(*axis_properties().torque[0], *axis_properties().torque[1], in[0]);
+}
 
 void Motor::read_speed(double* out) const {
   const int axis = joint_.own_axis();

@@ -1,5 +1,5 @@
 // Motor: drives the axes of a joint, each in mode off, spin (velocity motor, also of a linear axis), servo (position
-// motor) or spring. It has the joint's name. [sim]
+// motor), spring or torque (a given torque or force). It has the joint's name. [sim]
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace limber::sim {
 
-enum class MotorMode : std::uint8_t { off, spin, servo, spring };
+enum class MotorMode : std::uint8_t { off, spin, servo, spring, torque };  // in the order of AxisDrive
 
 class Motor {
  public:
@@ -25,9 +25,9 @@ class Motor {
   NodeId id() const { return id_; }
   const std::string& name() const { return joint_.name(); }
   Joint& joint() const { return joint_; }
-  /// The mode of an axis, derived from its three flags.
+  /// The mode of an axis, derived from its flags.
   MotorMode mode(int axis) const;
-  /// Sets the three flags of the own axis according to a mode.
+  /// Sets the flags of the own axis according to a mode.
   void set_mode(MotorMode mode);
   /// Sets the servo position and the spring's rest position of the own axis, m or rad.
   void set_target(double target);
@@ -60,6 +60,8 @@ class Motor {
   void write_mode(const double* in);
   void read_target(double* out) const;
   void write_target(const double* in);
+  void read_target_torque(double* out) const;
+  void write_target_torque(const double* in);
   void read_speed(double* out) const;
   void write_speed(const double* in);
   Result<void> validate_own_axis(const double* in) const;

@@ -5,6 +5,7 @@
 
 #include "sim/bullet/island_world.h"
 #include "sim/bullet/joints/joint_constraint.h"
+#include "sim/motion/part_motion.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -41,6 +42,9 @@ void Panic::apply_gravity() {
   const double size = glm::length(gravity);
   const bool limited = state_.on && size > kDamping * kTerminalSpeed;
   world_.bullet().setGravity(bullet::to_bt(limited ? gravity * (kDamping * kTerminalSpeed / size) : gravity));
+  for (const auto& body : world_.bodies()) {
+    if (gravity_factor(*body) != 1) apply_gravity_factor(*body);
+  }
 }
 
 bool Panic::holds_motors() const {

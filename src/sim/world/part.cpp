@@ -8,8 +8,11 @@
 #include "base/memory/prefetch.h"
 #include "sim/bullet/island_world.h"
 #include "sim/bullet/rotation_step.h"
+#include "sim/bullet/surface_motion.h"
 #include "sim/collision/contact_friction.h"
 #include "sim/collision/time_of_impact.h"
+#include "sim/motion/part_motion.h"
+#include "sim/sensors/readouts.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
@@ -38,19 +41,6 @@ double number_of(const Part& part, const Property& property) {
 }
 
 // Callbacks of the properties.
-
-void apply_mass(Part& part) {
-  static const Property& property = Part::table().at("mass");
-  if (part.is_static()) return;
-  btRigidBody& rigid = part.rigid();
-  const double mass = number_of(part, property);
-  const btScalar before = rigid.getInvMass();
-  rigid.setMassProps(static_cast<btScalar>(mass), bullet::to_bt(part.geometry()->unit_inertia * mass));
-  rigid.updateInertiaTensor();
-  // Bullet stores gravity as a force, which was computed with the old mass
-  rigid.setGravity(part.body().world().bullet().getGravity());
-  if (rigid.getInvMass() != before) part.wake();
-}
 
 void apply_damping(Part& part) {
   static const Property& linear = Part::table().at("linear_damping");
@@ -107,9 +97,22 @@ void read_inertia(const Part& part, double* out) { put(out, part.geometry()->uni
 void read_principal_axes(const Part& part, double* out) { put(out, part.principal_axes()); }
 void read_rotation_clamped(const Part& part, double* out) { out[0] = bullet::clamped_speed(part.rigid()); }
 
+// Prefetches all of the rigid body, since on-change callbacks access fields all over it.
+void prefetch_rigid_body(const void* object) {
+  prefetch(&static_cast<const Part*>(object)->rigid(), sizeof(btRigidBody));
+}
+
 Result<void> validate_mass(const Part& part, const double*) {
-  if (!part.is_static()) return {};
+  if (part.mass() > 0) return {};
   return Error{"the part was created static (mass 0); create it with a mass instead"};
+}
+
+// Marks a property that sets the pose: rays then find the part there.
+Property moves(Property property) {
+  property.on_write = [](void* part, const Property&) {
+    static_cast<const Part*>(part)->body().world().sensing().parts().invalidate();
+  };
+  return property;
 }
 
 // Calls one of two member functions of the part: with 3 numbers, or with 6, of which the last 3 are a point.
@@ -145,8 +148,12 @@ const PropertyTable& Part::table() {
   static const PropertyTable table(
       "part", "/physics/body/<body>/part/<part>", "/physics/part",
       {
-          validated_by<&validate_mass>(on_change<&apply_mass>(number(
+          validated_by<&validate_mass>(on_change<&apply_part_mass>(number(
               "mass", "kg", 1, 0.001, 1e6, "Mass; the inertia scales with it. A part created with mass 0 is static."))),
+          validated_by<&validate_motion>(on_change<&apply_part_motion>(choice(
+              "motion", {"dynamic", "kinematic", "static"}, 0,
+              "dynamic: moved by forces; kinematic: moved by setting its pose or velocity, pushes others and is never "
+              "pushed; static: doesn't move. A part created with mass 0 is static."))),
           on_change<&apply_damping>(
               number("linear_damping", "1/s", 0, 0, 1, "Fraction of the velocity lost per second.")),
           on_change<&apply_damping>(
@@ -166,6 +173,10 @@ const PropertyTable& Part::table() {
           on_change<&apply_surface>(number(
               "restitution", "", 0, 0, 1,
               "Restitution: share of the normal speed after a bounce; the values of two touching parts multiply.")),
+          on_change<&apply_surface_velocity>(vec3(
+              "surface_velocity", "m/s", {0, 0, 0}, -1e3, 1e3,
+              "Velocity of its surface along itself, in the link frame, as of a conveyor belt: friction moves parts "
+              "that touch it at this velocity.")),
           on_change<&Part::apply_collision>(
               boolean("self_collision", true, "Whether it collides with other parts of its body.")),
           on_change<&Part::apply_collision>(integer(
@@ -174,15 +185,21 @@ const PropertyTable& Part::table() {
           on_change<&Part::apply_collision>(
               integer("collision_mask", 65535, 0, 65535, "The groups that it collides with, as a bit set of 16.")),
           on_change<&Part::apply_report_contacts>(
-              boolean("report_contacts", false, "Report when this part begins to touch another.")),
-          transient(state(on_change<&Part::apply_pose>(
+              boolean("report_contacts", false, "Report contacts of this part with others, and measure their forces.")),
+          boolean("stream_contacts", false,
+                  "Send each contact point of this part over OSC after each tick, if report_contacts is on."),
+          // neighbors: engine/output/render_scene copies both at once
+          vec3("tint", "hsb", {0, 0, 1}, 0, 1,
+               "Color that multiplies the colors and textures of its shapes: hue, saturation, brightness."),
+          number("transparency", "", 0, 0, 1, "0: as its shapes; 1: invisible."),
+          moves(transient(state(on_change<&apply_part_pose>(
               vec3("position", "m", {0, 0, 0}, -1e6, 1e6,
-                   "Origin of the link frame, world. Beyond 10 km, the stability check restores the body.")))),
-          transient(state(on_change<&Part::apply_pose>(quat("rotation", "Link frame, world: x y z w.")))),
-          transient(state(on_change<&Part::apply_velocity>(
+                   "Origin of the link frame, world. Beyond 10 km, the stability check restores the body."))))),
+          moves(transient(state(on_change<&apply_part_pose>(quat("rotation", "Link frame, world: x y z w."))))),
+          transient(state(on_change<&apply_part_velocity>(
               vec3("linear_velocity", "m/s", {0, 0, 0}, -1e4, 1e4,
                    "Velocity of the center of mass, world. From 500 m/s on, the stability check restores the body.")))),
-          transient(state(on_change<&Part::apply_velocity>(vec3(
+          transient(state(on_change<&apply_part_velocity>(vec3(
               "angular_velocity", "rad/s", {0, 0, 0}, -1e4, 1e4,
               "Angular velocity, world axes. The stability check restores the body from 1000 rad/s on, not counting "
               "rotation about a driven joint's axis or a principal axis, and from 20000 rad/s on in any case.")))),
@@ -195,6 +212,17 @@ const PropertyTable& Part::table() {
               "rotation_clamped", "rad/s", 0, 0, kUnbounded,
               "Angular speed clamped off in the last tick; 0: not clamped. Rotation is limited to π/4 per substep, "
               "except about a driven joint's axis or a principal axis. More substeps raise the limit."))),
+          computed<&read_contact_count>(readout(
+              integer("contact_count", 0, 0, kUnbounded, "Number of its contact points, if report_contacts is on."))),
+          computed<&read_contact_normal_force>(
+              readout(number("contact_normal_force", "N", 0, 0, kUnbounded,
+                             "Sum of the normal forces at its contact points, mean of the last tick."))),
+          computed<&read_contact_friction_force>(
+              readout(number("contact_friction_force", "N", 0, 0, kUnbounded,
+                             "Size of the total friction force on it, mean of the last tick."))),
+          computed<&read_contact_force>(
+              readout(vec3("contact_force", "N", {0, 0, 0}, -kUnbounded, kUnbounded,
+                           "Total force of its contacts on it, world, mean of the last tick."))),
           invokes<&act_force>(action("apply_force", 3, 6,
                                      "Force in N for one tick, world; at a world point, else the center. From 500 "
                                      "m/s on, the stability check restores the body.")),
@@ -205,7 +233,7 @@ const PropertyTable& Part::table() {
                                       "Torque in N·m for one tick, world axes. From 1000 rad/s of tumbling on, the "
                                       "stability check restores the body.")),
       },
-      &Part::prefetch_rigid_body);
+      &prefetch_rigid_body);
   return table;
 }
 
@@ -215,11 +243,11 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
       id_(body.store().add(table(), group, std::move(name), this)),
       accumulator_(body.world().force_accumulators().add(*this)),
       geometry_(std::move(geometry)),
-      is_static_(mass <= 0),
-      state_{.start = pose} {
-  body_.store().mutable_values(id_, table().at("mass"))[0] = is_static_ ? 0 : mass;
-  const btVector3 inertia = is_static_ ? btVector3(0, 0, 0) : bullet::to_bt(geometry_->unit_inertia * mass);
-  btRigidBody::btRigidBodyConstructionInfo info(is_static_ ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
+      state_{.kinematic = {.motion = mass > 0 ? PartMotion::dynamic : PartMotion::fixed}, .start = pose} {
+  body_.store().mutable_values(id_, table().at("mass"))[0] = is_static() ? 0 : mass;
+  body_.store().mutable_values(id_, table().at("motion"))[0] = static_cast<double>(motion());
+  const btVector3 inertia = is_static() ? btVector3(0, 0, 0) : bullet::to_bt(geometry_->unit_inertia * mass);
+  btRigidBody::btRigidBodyConstructionInfo info(is_static() ? btScalar(0) : static_cast<btScalar>(mass), nullptr,
                                                 geometry_->shape.get(), inertia);
   info.m_startWorldTransform = bullet::to_bt(pose * geometry_->frame);
   {
@@ -235,9 +263,11 @@ Part::Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geo
 
 Part::~Part() {
   World& world = body_.world();
-  if (reports_contacts()) world.contacts().set_reporting(false);
-  world.contacts().remove_part(*this);
+  if (reports_contacts()) world.sensing().contacts().set_reporting(false);
+  world.sensing().contacts().remove_part(*this);
+  world.kinematics().remove(*this);
   remove_from_world();
+  delete bullet::surface_velocity(*rigid_);
   world.force_accumulators().remove(accumulator_);
   body_.store().remove(id_);
 }
@@ -285,6 +315,7 @@ void Part::set_pose(const Pose& pose) {
   put(store.mutable_values(id_, *motion_properties().position), pose.position);
   put(store.mutable_values(id_, *motion_properties().rotation), pose.rotation);
   store.mark_dirty(id_, *motion_properties().position);
+  body_.world().sensing().parts().invalidate();
 }
 
 void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
@@ -296,7 +327,7 @@ void Part::set_velocity(const Vec3& linear, const Vec3& angular) {
   store.mark_dirty(id_, *motion_properties().linear_velocity);
 }
 
-bool Part::asleep() const { return !is_static_ && !rigid_->isActive(); }
+bool Part::asleep() const { return !is_static() && !rigid_->isActive(); }
 
 Part::Motion Part::capture_motion() const {
   const btMatrix3x3& r = rigid_->getWorldTransform().getBasis();
@@ -309,7 +340,9 @@ Part::Motion Part::capture_motion() const {
           .bullet_pose = {r[0][0], r[0][1], r[0][2], r[1][0], r[1][1], r[1][2], r[2][0], r[2][1], r[2][2], p[0], p[1],
                           p[2]},
           .bullet_linear_velocity = {v[0], v[1], v[2]},
-          .bullet_angular_velocity = {w[0], w[1], w[2]}};
+          .bullet_angular_velocity = {w[0], w[1], w[2]},
+          .set_linear_velocity = state_.kinematic.linear,
+          .set_angular_velocity = state_.kinematic.angular};
 }
 
 void Part::set_motion(const Motion& motion) {
@@ -329,6 +362,9 @@ void Part::set_motion(const Motion& motion) {
   rigid_->setLinearVelocity(vector(motion.bullet_linear_velocity));
   rigid_->setAngularVelocity(vector(motion.bullet_angular_velocity));
   rigid_->updateInertiaTensor();
+  state_.kinematic.linear = motion.set_linear_velocity;
+  state_.kinematic.angular = motion.set_angular_velocity;
+  if (is_static()) body_.world().kinematics().add(*this);
 }
 
 void Part::save_for_rollback() {
@@ -340,6 +376,7 @@ void Part::flush() {
   WorldTransaction& transaction = body_.world().transaction();
   if (!transaction.active()) return body_.store().flush();
   transaction.save_motion(*this);
+  save_kinematic_state(*this);
   body_.store().flush(id_);
 }
 
@@ -385,50 +422,23 @@ void Part::publish() {
 
 bool Part::reports_contacts() const { return state_.report_contacts; }
 
-// Prefetches all of the rigid body, since on-change callbacks access fields all over it.
-void Part::prefetch_rigid_body(const void* object) {
-  prefetch(static_cast<const Part*>(object)->rigid_.get(), sizeof(btRigidBody));
-}
-
-void Part::apply_pose() {
-  const btTransform t = bullet::to_bt(pose() * geometry_->frame);
-  if (!is_static_ || !(t == rigid_->getWorldTransform())) wake();
-  rigid_->setWorldTransform(t);
-  rigid_->setInterpolationWorldTransform(t);
-  rigid_->updateInertiaTensor();
-  body_.mark_joints_dirty();
-}
-
-void Part::apply_velocity() {
-  if (is_static_) {
-    if (linear_velocity() != Vec3(0) || angular_velocity() != Vec3(0)) {
-      body_.warnings().warn_static_velocity(fmt::format("part '{}' is", name()));
-    }
-    return;
-  }
-  const bool changes = bullet::to_bt(linear_velocity()) != rigid_->getLinearVelocity() ||
-                       bullet::to_bt(angular_velocity()) != rigid_->getAngularVelocity();
-  if (changes) wake();
-  rigid_->setLinearVelocity(bullet::to_bt(linear_velocity()));
-  rigid_->setAngularVelocity(bullet::to_bt(angular_velocity()));
-}
-
 void Part::apply_collision() {
   static const Property& group = table().at("collision_group");
   static const Property& mask = table().at("collision_mask");
   static const Property& own = table().at("self_collision");
+  static const Property& of_body = Body::table().at("self_collision");
   const Store& store = body_.store();
   bullet::CollisionFilter filter;
   filter.group = static_cast<std::uint16_t>(store.values(id_, group)[0]);
   filter.mask = static_cast<std::uint16_t>(store.values(id_, mask)[0]);
   filter.body = static_cast<std::int32_t>(body_.id().slot);
-  filter.self_collision = body_.self_collision() && store.values(id_, own)[0] != 0;
+  filter.self_collision = store.values(body_.id(), of_body)[0] != 0 && store.values(id_, own)[0] != 0;
   body_.world().bullet().set_filter(*rigid_, filter);
 }
 
 void Part::apply_report_contacts() {
   const bool wanted = body_.store().values(id_, table().at("report_contacts"))[0] != 0;
-  if (wanted != state_.report_contacts) body_.world().contacts().set_reporting(wanted);
+  if (wanted != state_.report_contacts) body_.world().sensing().contacts().set_reporting(wanted);
   state_.report_contacts = wanted;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/memory/archive.h"
 #include "properties/store.h"
+#include "sim/motion/kinematics.h"
 #include "sim/shapes/geometry.h"
 #include "sim/world/force_accumulators.h"
 
@@ -24,7 +25,7 @@ class Part {
  public:
   static const PropertyTable& table();
 
-  /// `mass` 0: static, permanently. `pose`: link frame in world coordinates.
+  /// `mass` 0: never dynamic. `pose`: link frame in world coordinates.
   Part(Body& body, NodeId group, std::string name, std::shared_ptr<const Geometry> geometry, double mass,
        const Pose& pose);
   ~Part();
@@ -34,7 +35,11 @@ class Part {
   NodeId id() const { return id_; }
   const std::string& name() const;
   Body& body() const { return body_; }
-  bool is_static() const { return is_static_; }
+  PartMotion motion() const { return state_.kinematic.motion; }
+  /// True unless it is dynamic: no force moves it.
+  bool is_static() const { return motion() != PartMotion::dynamic; }
+  KinematicState& kinematic() { return state_.kinematic; }
+  const KinematicState& kinematic() const { return state_.kinematic; }
   const std::shared_ptr<const Geometry>& geometry() const { return geometry_; }
   /// The scene's shape that it was created from, or a null id (URDF).
   NodeId shape() const { return shape_; }
@@ -60,6 +65,7 @@ class Part {
     Vec3 linear_velocity, angular_velocity;
     std::array<float, 12> bullet_pose;  ///< Rotation matrix by rows, then the origin.
     std::array<float, 3> bullet_linear_velocity, bullet_angular_velocity;
+    Vec3 set_linear_velocity, set_angular_velocity;  ///< Of a kinematic part.
   };
   Motion capture_motion() const;
   void set_motion(const Motion& motion);
@@ -98,12 +104,6 @@ class Part {
   void publish();
   bool reports_contacts() const;
 
-  /// Prefetches the btRigidBody of `object`, a Part.
-  static void prefetch_rigid_body(const void* object);
-
-  /// Apply the pose and velocity in the store to Bullet: on-change callbacks, also used by the stability check.
-  void apply_pose();
-  void apply_velocity();
   /// Applies its collision group, mask, and whether it collides with parts of its own body.
   void apply_collision();
 
@@ -116,10 +116,10 @@ class Part {
   std::uint32_t accumulator_;  // its index in World::force_accumulators()
   std::shared_ptr<const Geometry> geometry_;
   std::unique_ptr<btRigidBody> rigid_;
-  bool is_static_ = false;
   // what persists from tick to tick, besides its properties
   struct State {
     bool report_contacts = false;
+    KinematicState kinematic;
     Pose start;
   } state_;
   std::uint64_t saved_in_call_ = 0;  // the last guarded call that saved its forces

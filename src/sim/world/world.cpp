@@ -8,6 +8,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
 #include "sim/gears/gear_list.h"
+#include "sim/sensors/readouts.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
@@ -49,6 +50,20 @@ void publish_solver_counts(World& world, const solver::DirectCounts& before) {
   add(world_properties().fallbacks, now.fallbacks - before.fallbacks);
   add(world_properties().islands_direct, direct);
   add(world_properties().islands_iterative, now.islands - before.islands - direct);
+}
+
+// Applies pending property changes, and adds new parts and joints to Bullet's world.
+void apply_changes(World& world) {
+  world.store().flush(world.thread_pool());
+  for (const auto& body : world.bodies()) body->add_to_world();
+}
+
+// Lets joints read the poses that were set.
+void update_moved_joints(World& world) {
+  for (const auto& body : world.bodies()) {
+    if (body->update_moved_joints()) world.gears().reset_constraints(*body);
+  }
+  world.gears().update();
 }
 
 // Callbacks of the properties.
@@ -115,6 +130,16 @@ const PropertyTable& World::table() {
           transient(readout(
               integer("islands_iterative", 0, 0, kUnbounded,
                       "Island steps solved by the iterative solver, regularly or as a fallback, since the start."))),
+          computed<&read_world_momentum>(readout(vec3("momentum", "kg·m/s", {0, 0, 0}, -kUnbounded, kUnbounded,
+                                                      "Total momentum of all parts that can move."))),
+          computed<&read_world_angular_momentum>(
+              readout(vec3("angular_momentum", "kg·m²/s", {0, 0, 0}, -kUnbounded, kUnbounded,
+                           "Total angular momentum about the world's origin."))),
+          computed<&read_world_kinetic_energy>(
+              readout(number("kinetic_energy", "J", 0, 0, kUnbounded, "Total energy of motion and rotation."))),
+          computed<&read_world_potential_energy>(
+              readout(number("potential_energy", "J", 0, -kUnbounded, kUnbounded,
+                             "Total energy in the gravity field; 0 at the world's origin."))),
           invokes<&request_reset>(action("reset", 0, 0, "Restarts the scene; values set by controllers stay.")),
       });
   return table;
@@ -211,12 +236,9 @@ std::uint64_t World::seed() const {
 }
 
 void World::flush() {
-  store_.flush(thread_pool_.get());
-  for (const auto& body : bodies()) {
-    body->add_to_world();
-    if (body->update_moved_joints()) gears_->reset_constraints(*body);
-  }
-  gears_->update();
+  apply_changes(*this);
+  part_inputs_.kinematics.place();
+  update_moved_joints(*this);
 }
 
 TickTimes World::step() {
@@ -224,27 +246,31 @@ TickTimes World::step() {
   const double start_time = system::clock_seconds();
   if (!panic_.on()) behaviors_->step(timestep());
   const double flush_time = system::clock_seconds();
-  flush();
+  apply_changes(*this);
+  part_inputs_.kinematics.begin_tick(timestep());
+  update_moved_joints(*this);
   for (const auto& body : bodies()) {
     body->recovery().save_new_start_pose();
     body->pairs().find_new_overlaps(overlaps_);
   }
   overlaps_.log();
-  if (panic_.on()) force_accumulators_.discard();
-  visuals_->overlay().capture_forces(force_accumulators_);
-  force_accumulators_.apply();
-  contacts_.begin_tick();
+  if (panic_.on()) part_inputs_.forces.discard();
+  visuals_->overlay().capture_forces(part_inputs_.forces);
+  sensing_.begin_tick();
+  part_inputs_.forces.apply();
   const double physics_time = system::clock_seconds();
   const solver::DirectCounts previous_counts = bullet_->direct_counts();
   bullet_->step(timestep() / substeps(), substeps());
   const double readout_time = system::clock_seconds();
-  contacts_.end_tick();
+  sensing_.end_contacts();
   state_.tick++;
   publish_time();
   store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
   publish_solver_counts(*this, previous_counts);
   store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
   awake_bodies_.publish();
+  part_inputs_.kinematics.end_tick();
+  sensing_.end_tick();
   gears_->warn_slipping();
   stability_.end_tick();
   visuals_->camera_moves().step();
@@ -270,15 +296,17 @@ void World::after_substep(btDynamicsWorld* bullet, btScalar h) {
     world.panic_.damp(static_cast<double>(h));
     world.bullet_->refresh_joints();
   }
-  world.contacts_.collect(*bullet->getDispatcher());
+  world.sensing_.end_substep(static_cast<double>(h));
   world.stability_.check_parts(static_cast<double>(h));
 }
 
 void World::serialize(Archive& archive) {
-  archive.serialize_all(state_, stability_, panic_, store_, contacts_, visuals_->camera_moves(), force_accumulators_);
+  archive.serialize_all(state_, stability_, panic_, store_, sensing_, visuals_->camera_moves(), part_inputs_.forces);
   for (const auto& body : bodies()) body->serialize(archive);
   archive.serialize_all(*gears_, *behaviors_);
-  if (archive.loading()) awake_bodies_.invalidate();
+  if (!archive.loading()) return;
+  awake_bodies_.invalidate();
+  part_inputs_.kinematics.restore();
 }
 
 }  // namespace limber::sim

@@ -11,11 +11,12 @@
 
 #include "properties/store.h"
 #include "sim/bullet/bullet_memory.h"
+#include "sim/motion/kinematics.h"
 #include "sim/neighbors/mass_table.h"
+#include "sim/sensors/sensing.h"
 #include "sim/state/motion_hash.h"
 #include "sim/state/world_transaction.h"
 #include "sim/world/awake_bodies.h"
-#include "sim/world/contacts.h"
 #include "sim/world/force_accumulators.h"
 #include "sim/world/object_list.h"
 #include "sim/world/panic.h"
@@ -97,14 +98,13 @@ class World {
   /// Requests to the owner of the scene; it consumes them between two ticks.
   WorldRequests& requests() { return state_.requests; }
   Panic& panic() { return panic_; }
-  const Panic& panic() const { return panic_; }
   /// Removes all behaviors, bodies and shapes, and resets the world's own properties to their defaults.
   void clear();
   /// Sets the tick counter and the simulated time, and resets the solver's counters.
   void restart_time(std::uint64_t tick = 0, double time = 0);
 
-  /// Reports contacts that began in the last tick.
-  Contacts& contacts() { return contacts_; }
+  Kinematics& kinematics() { return part_inputs_.kinematics; }
+  Sensing& sensing() { return sensing_; }
   StabilityCheck& stability() { return stability_; }
   const StabilityCheck& stability() const { return stability_; }
   /// Parts that overlap in their first tick; reported in the next step.
@@ -117,7 +117,7 @@ class World {
   /// Serializes all that persists from tick to tick, except Bullet's memory and the values of properties.
   void serialize(Archive& archive);
 
-  ForceAccumulators& force_accumulators() { return force_accumulators_; }
+  ForceAccumulators& force_accumulators() { return part_inputs_.forces; }
   MassTable& mass_table() { return mass_table_; }
   bullet::IslandWorld& bullet() { return *bullet_; }
   bullet::BulletMemory& bullet_memory() { return bullet_memory_; }
@@ -135,7 +135,10 @@ class World {
   NodeId id_;
   bullet::BulletMemory bullet_memory_;
   std::unique_ptr<bullet::IslandWorld> bullet_;
-  ForceAccumulators force_accumulators_;
+  struct PartInputs {  // what scripts and controllers do to parts
+    ForceAccumulators forces;
+    Kinematics kinematics;
+  } part_inputs_{{}, Kinematics(*this)};
   MassTable mass_table_;
   std::unique_ptr<ShapeList> shapes_;
   ObjectList<Body> bodies_;
@@ -143,7 +146,7 @@ class World {
   std::unique_ptr<BehaviorList> behaviors_;
   std::unique_ptr<Visuals> visuals_;
   WorldTransaction transaction_{*this};
-  Contacts contacts_;
+  Sensing sensing_{*this};
   StabilityCheck stability_{*this};
   OverlapReport overlaps_;
   AwakeBodies awake_bodies_{*this};

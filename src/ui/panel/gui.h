@@ -31,6 +31,9 @@ struct GuiOptions {
   std::function<void(const std::string&)> store_line = [](const std::string&) {};  ///< Stores a console line.
   std::function<void(const std::string&)> copy = [](const std::string&) {};        ///< Copies to the clipboard.
   std::function<std::string()> paste = [] { return std::string(); };
+  std::string scene_file;  ///< The file name that is proposed for the scene of the model that plays.
+  /// Writes the scene of the model that plays to a file, which may exist only if `overwrite`; empty: no model plays.
+  std::function<Result<void>(const std::string& file, bool overwrite)> save_scene;
 };
 
 /// Size, scale and time of a frame.

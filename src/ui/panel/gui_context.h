@@ -46,11 +46,12 @@ struct TimedText {
   bool visible(double now) const { return now < until; }
 };
 
-/// A question that is asked before a message is sent.
+/// A question that is asked before a message is sent, or an action is called.
 struct Confirmation {
   std::string question;
-  std::string verb;  ///< Label of the button that sends the message.
+  std::string verb;  ///< Label of the button that confirms.
   Message message;
+  std::function<void()> action = {};  ///< Called instead of sending the message, if set.
 };
 
 /// Requests to panels. The panel that carries one out resets it.

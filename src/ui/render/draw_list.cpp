@@ -27,6 +27,8 @@ double bounding_radius(const model::ShapeModel& shape) {
   switch (shape.kind) {
     case model::ShapeKind::box:
       return glm::length(shape.size) / 2;
+    case model::ShapeKind::ellipsoid:
+      return std::max({shape.size.x, shape.size.y, shape.size.z}) / 2;
     case model::ShapeKind::sphere:
       return shape.radius;
     case model::ShapeKind::capsule:
@@ -64,7 +66,9 @@ void DrawList::rebuild_shapes(const engine::Snapshot& current) {
   scene_ = current.render_scene;
   meshes_.clear();
   shapes_.clear();
+  first_part_.clear();
   models_.clear();
+  images_.clear();
   std::map<MeshKey, std::uint32_t> numbers;
   for (const engine::RenderShape& render_shape : scene_->shapes) {
     const model::ShapeModel& shape = render_shape.geometry;
@@ -81,11 +85,22 @@ void DrawList::rebuild_shapes(const engine::Snapshot& current) {
     const MeshSize size = shape.mesh != nullptr ? MeshSize{} : mesh_size(shape);
     for (int i = 0; i < 3; i++) shape_draw.size.extent[i] = to_float(size.extent[i]);
     shape_draw.size.rounding_radius = to_float(size.rounding_radius);
-    const auto [number, fresh] = numbers.try_emplace(shape_draw.mesh, static_cast<std::uint32_t>(meshes_.size()));
-    if (fresh) meshes_.push_back(shape_draw.mesh);
-    shape_draw.mesh_index = number->second;
-    shapes_.push_back(shape_draw);
+    first_part_.push_back(static_cast<std::uint32_t>(shapes_.size()));
+    shape_draw.mesh.coloring = coloring_of(shape);
+    const bool plain = shape_draw.mesh.coloring == MeshColoring::plain;
+    for (const MeshPart& part : plain ? std::vector<MeshPart>(1) : mesh_parts(shape)) {
+      shape_draw.mesh.texture = part.texture.get();
+      shape_draw.alpha = to_float(part.alpha);
+      if (part.texture != nullptr) images_[part.texture.get()] = part.texture;
+      const auto [number, fresh] = numbers.try_emplace(shape_draw.mesh, static_cast<std::uint32_t>(meshes_.size()));
+      if (fresh) meshes_.push_back(shape_draw.mesh);
+      shape_draw.mesh_index = number->second;
+      shapes_.push_back(shape_draw);
+      shape_draw.mesh.part++;
+      shape_draw.first_part = false;
+    }
   }
+  first_part_.push_back(static_cast<std::uint32_t>(shapes_.size()));
 }
 
 void DrawList::update_materials(const engine::Snapshot& current) {
@@ -95,10 +110,25 @@ void DrawList::update_materials(const engine::Snapshot& current) {
   materials_.clear();
   for (std::uint32_t i = 0; i <= max_material; i++)
     materials_.push_back(instance_material(engine::material_of(current, i)));
+  update_tints(current);
 }
 
-void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const DrawCamera& camera) {
-  const InstanceMaterial& material = materials_[shape.material];
+void DrawList::update_tints(const engine::Snapshot& current) {
+  tints_.clear();
+  for (const engine::RenderInstance& instance : scene_->instances) {
+    const engine::Tint tint = engine::tint_of(current, instance);
+    for (int i = 0; i < 3; i++) tints_.push_back(tint.color[i] == 1 ? 1 : to_float(linear_light_of(tint.color[i])));
+    tints_.push_back(to_float(1 - tint.transparency));
+  }
+}
+
+void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const float* tint, const DrawCamera& camera) {
+  InstanceMaterial material = materials_[shape.material];
+  for (int i = 0; i < 3; i++) {
+    material.diffuse[i] *= tint[i];
+    material.ambient[i] *= tint[i];
+  }
+  material.alpha *= tint[3] * shape.alpha;
   if (material.alpha < kMinVisibleAlpha || !is_finite(pose.position) || !is_finite(pose.rotation)) return;
   if (shape.mesh.kind == model::ShapeKind::plane) {
     planes_.push_back({to_float(pose.position),
@@ -133,6 +163,7 @@ void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const Draw
                                                      camera.detail_bias);
   const auto key = shape.mesh_index * kDetailLevels + static_cast<std::uint32_t>(detail);
   (material.alpha < 1 ? transparent_instances_ : opaque_instances_).push_back({instance, key, to_float(depth)});
+  if (!shape.first_part) return;
   positions_.push_back(position);
   radii_.push_back(to_float(shape.bounding_radius));
 }
@@ -152,11 +183,13 @@ void DrawList::update(const engine::Snapshot& previous, const engine::Snapshot& 
   planes_.clear();
   positions_.clear();
   radii_.clear();
-  for (const engine::RenderInstance& instance : scene_->instances) {
+  for (std::size_t i = 0; i < scene_->instances.size(); i++) {
+    const engine::RenderInstance& instance = scene_->instances[i];
     if (current.transient[instance.enabled_offset] == 0) continue;
     Pose part = engine::part_pose(current, instance.part_offset);
     if (interpolates) part = interpolate(engine::part_pose(previous, instance.part_offset), part, mix);
-    add_instance(shapes_[instance.shape], part * instance.origin, camera);
+    for (std::uint32_t k = first_part_[instance.shape]; k < first_part_[instance.shape + 1]; k++)
+      add_instance(shapes_[k], part * instance.origin, tints_.data() + 4 * i, camera);
   }
   compute_bounds();
   build_batches();

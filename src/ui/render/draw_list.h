@@ -28,10 +28,13 @@ struct Instance {
   float specular_exponent;
 };
 
-/// Identifies a mesh: a primitive's, or one from a file (`model` is set).
+/// Identifies a mesh: a primitive's, or one from a file (`model` is set), or a part of one that isn't plain.
 struct MeshKey {
   model::ShapeKind kind = model::ShapeKind::box;
   const model::MeshModel* model = nullptr;
+  MeshColoring coloring = MeshColoring::plain;
+  std::uint32_t part = 0;  ///< Index of mesh_parts().
+  const model::Image* texture = nullptr;
   // NOLINTNEXTLINE(modernize-use-nullptr): reported for the comparison that the compiler generates
   auto operator<=>(const MeshKey&) const = default;
 };
@@ -80,6 +83,8 @@ class DrawList {
   const std::shared_ptr<const engine::RenderScene>& scene() const { return scene_; }
   /// The meshes from files that the scene uses.
   const std::map<const model::MeshModel*, std::shared_ptr<const model::MeshModel>>& models() const { return models_; }
+  /// The images that the scene uses as textures.
+  const std::map<const model::Image*, std::shared_ptr<const model::Image>>& images() const { return images_; }
 
  private:
   struct InstanceSize {
@@ -90,9 +95,12 @@ class DrawList {
     float specular, specular_exponent, alpha;
     float diffuse[3], ambient[3];
   };
+  // a render shape, or a part of one that isn't plain
   struct ShapeDraw {
     MeshKey mesh;
     std::uint32_t mesh_index = 0;
+    bool first_part = true;
+    float alpha = 1;  // of the part's materials
     InstanceSize size;
     double bounding_radius = 0;  // m
     Pose offset;                 // pose of the mesh in the shape's frame
@@ -107,7 +115,8 @@ class DrawList {
   static InstanceMaterial instance_material(const engine::Material& m);
   void rebuild_shapes(const engine::Snapshot& current);
   void update_materials(const engine::Snapshot& current);
-  void add_instance(const ShapeDraw& shape, const Pose& pose, const DrawCamera& camera);
+  void update_tints(const engine::Snapshot& current);
+  void add_instance(const ShapeDraw& shape, const Pose& pose, const float* tint, const DrawCamera& camera);
   void compute_bounds();
   void sort_opaque();
   void sort_transparent();
@@ -118,8 +127,11 @@ class DrawList {
   std::uint64_t materials_version_ = 0;
   std::vector<MeshKey> meshes_;  // by mesh number
   std::vector<ShapeDraw> shapes_;
+  std::vector<std::uint32_t> first_part_;  // by render shape: index of its first part in shapes_; one more at the end
   std::vector<InstanceMaterial> materials_;
   std::map<const model::MeshModel*, std::shared_ptr<const model::MeshModel>> models_;
+  std::map<const model::Image*, std::shared_ptr<const model::Image>> images_;
+  std::vector<float> tints_;  // by instance: linear red, green and blue, and alpha
   std::vector<VisibleInstance> opaque_instances_, transparent_instances_;
   std::vector<std::uint32_t> first_, order_;  // scratch
   std::vector<glm::vec3> positions_;

@@ -11,6 +11,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "model/look/mesh_look.h"
+
 namespace limber::render {
 
 namespace {
@@ -74,6 +76,14 @@ MeshVertices round_mesh(model::ShapeKind kind, int detail) {
     const double end = kind == model::ShapeKind::capsule ? 1 : 0;
     add_quarter(profile, 0, end, false, quarter);
     add_quarter(profile, 0, -end, true, quarter);
+    return revolve(profile, around);
+  }
+  if (kind == model::ShapeKind::ellipsoid) {
+    // without rounding, unlike a sphere, since its radii differ
+    for (int i = 0; i <= 2 * quarter; i++) {
+      const double angle = std::numbers::pi / 2 * i / quarter;
+      profile.push_back({std::sin(angle), std::cos(angle), std::sin(angle), std::cos(angle)});
+    }
     return revolve(profile, around);
   }
   if (kind == model::ShapeKind::cylinder) {
@@ -179,14 +189,17 @@ MeshVertices chamfered_box() {
 struct Soup {
   std::vector<Vec3> points;
   std::vector<std::array<unsigned, 3>> triangles;
+  std::vector<std::size_t> sources;  // indices of the triangles in the model
 };
 
 Soup soup_of(const model::MeshModel& model) {
-  Soup soup{model.vertices, {}};
+  Soup soup{model.vertices, {}, {}};
   const auto count = static_cast<unsigned>(model.vertices.size());
   for (std::size_t i = 0; i + 2 < model.triangles.size(); i += 3) {
     const std::array<unsigned, 3> t = {model.triangles[i], model.triangles[i + 1], model.triangles[i + 2]};
-    if (t[0] < count && t[1] < count && t[2] < count) soup.triangles.push_back(t);
+    if (t[0] >= count || t[1] >= count || t[2] >= count) continue;
+    soup.triangles.push_back(t);
+    soup.sources.push_back(i / 3);
   }
   return soup;
 }
@@ -218,11 +231,114 @@ Soup cluster_vertices(const Soup& fine, int cells) {
     count[cluster_of[i]] += 1;
   }
   for (std::size_t i = 0; i < out.points.size(); i++) out.points[i] /= count[i];
-  for (const auto& t : fine.triangles) {
+  for (std::size_t i = 0; i < fine.triangles.size(); i++) {
+    const auto& t = fine.triangles[i];
     const std::array<unsigned, 3> moved = {cluster_of[t[0]], cluster_of[t[1]], cluster_of[t[2]]};
-    if (moved[0] != moved[1] && moved[1] != moved[2] && moved[0] != moved[2]) out.triangles.push_back(moved);
+    if (moved[0] == moved[1] || moved[1] == moved[2] || moved[0] == moved[2]) continue;
+    out.triangles.push_back(moved);
+    out.sources.push_back(fine.sources[i]);
   }
   return out;
+}
+
+// calls `add(point, triangle, k)` for each corner k of each triangle of the model at this level of detail
+template <class Add>
+void for_each_corner(const model::MeshModel& model, int detail, Add add) {
+  Soup soup = soup_of(model);
+  if (detail > 0 && soup.triangles.size() > 200) soup = cluster_vertices(soup, detail == 1 ? 16 : 8);
+  std::vector<Vec3> face_normals;
+  std::vector<std::vector<unsigned>> triangles_at(soup.points.size());
+  face_normals.reserve(soup.triangles.size());
+  for (const auto& t : soup.triangles) {
+    const Vec3 along = soup.points[t[1]] - soup.points[t[0]];
+    for (const unsigned corner : t) triangles_at[corner].push_back(static_cast<unsigned>(face_normals.size()));
+    face_normals.push_back(
+        glm::cross(along, soup.points[t[2]] - soup.points[t[0]]));  // not normalized: weighted by area
+  }
+  for (std::size_t i = 0; i < soup.triangles.size(); i++) {
+    const Vec3 face_normal = normalized(face_normals[i]);
+    for (std::size_t k = 0; k < 3; k++) {
+      const unsigned corner = soup.triangles[i][k];
+      Vec3 sum = face_normals[i];
+      if (triangles_at[corner].size() <= kMaxNeighbors) {
+        for (const unsigned neighbor : triangles_at[corner]) {
+          if (neighbor != i && glm::dot(face_normal, normalized(face_normals[neighbor])) > kMinCreaseCosine)
+            sum += face_normals[neighbor];
+        }
+      }
+      add(Point{soup.points[corner], normalized(sum)}, soup.sources[i], k);
+    }
+  }
+}
+
+ColoredVertex colored(const MeshVertex& v) {
+  return {{v.corner[0], v.corner[1], v.corner[2]},
+          {v.normal[0], v.normal[1], v.normal[2]},
+          {0, 0},
+          {255, 255, 255, 255},
+          {0, 0, 0, 255}};
+}
+
+std::uint8_t byte_of(double channel) { return static_cast<std::uint8_t>(std::clamp(channel, 0.0, 1.0) * 255 + 0.5); }
+
+// texture coordinates of a triangle of a box: its face is the axis along which its normals point
+void map_box(std::array<ColoredVertex, 3>& t) {
+  Vec3 sum(0);
+  for (const ColoredVertex& v : t) sum += Vec3(v.normal[0], v.normal[1], v.normal[2]);
+  int axis = 0;
+  for (int i = 1; i < 3; i++) axis = std::abs(sum[i]) > std::abs(sum[axis]) ? i : axis;
+  const float side = sum[axis] < 0 ? -1.0F : 1.0F;
+  // seen from outside, v points up (z, or y on the horizontal faces) and u to the right
+  const int up = axis == 2 ? 1 : 2;
+  const int right = axis == 0 ? 1 : 0;
+  const float turn = axis == 1 ? -side : side;
+  for (ColoredVertex& v : t) {
+    v.texcoord[0] = 0.5F + 0.5F * turn * v.corner[right];
+    v.texcoord[1] = 0.5F - 0.5F * v.corner[up];
+  }
+}
+
+// texture coordinates of a triangle of a round shape: u around z, v from the top down
+void map_round(std::array<ColoredVertex, 3>& t) {
+  const auto turn_of = [](const ColoredVertex& v) {
+    const bool on_axis = v.corner[0] == 0 && v.corner[1] == 0;
+    const float* const from = on_axis ? v.normal : v.corner;
+    return 0.5F + std::atan2(from[1], from[0]) / (2 * std::numbers::pi_v<float>);
+  };
+  float high = 0;
+  for (ColoredVertex& v : t) high = std::max(high, v.texcoord[0] = turn_of(v));
+  for (ColoredVertex& v : t) {
+    if (high - v.texcoord[0] > 0.5F) v.texcoord[0] += 1;  // across the seam
+    v.texcoord[1] = 0.5F - 0.25F * (v.corner[2] + v.normal[2]);
+  }
+}
+
+ColoredVertices colored_primitive(model::ShapeKind kind, int detail) {
+  ColoredVertices out;
+  const MeshVertices plain = primitive_mesh(kind, detail);
+  out.reserve(plain.size());
+  for (std::size_t i = 0; i + 2 < plain.size(); i += 3) {
+    std::array<ColoredVertex, 3> t = {colored(plain[i]), colored(plain[i + 1]), colored(plain[i + 2])};
+    if (kind == model::ShapeKind::box) {
+      map_box(t);
+    } else {
+      map_round(t);
+    }
+    out.insert(out.end(), t.begin(), t.end());
+  }
+  return out;
+}
+
+// the part of each material
+std::vector<std::size_t> parts_of_materials(const model::MeshLook& look, std::vector<MeshPart>& parts) {
+  std::vector<std::size_t> part_of;
+  for (const model::MeshMaterial& material : look.materials) {
+    const MeshPart part{material.texture, material.alpha};
+    const auto found = std::find(parts.begin(), parts.end(), part);
+    part_of.push_back(static_cast<std::size_t>(found - parts.begin()));
+    if (found == parts.end()) parts.push_back(part);
+  }
+  return part_of;
 }
 
 }  // namespace
@@ -235,6 +351,7 @@ MeshVertices primitive_mesh(model::ShapeKind kind, int detail) {
     case model::ShapeKind::capsule:
     case model::ShapeKind::cylinder:
     case model::ShapeKind::cone:
+    case model::ShapeKind::ellipsoid:
       return round_mesh(kind, detail);
     default:
       return {};
@@ -242,44 +359,71 @@ MeshVertices primitive_mesh(model::ShapeKind kind, int detail) {
 }
 
 MeshVertices model_mesh(const model::MeshModel& model, int detail) {
-  Soup soup = soup_of(model);
-  if (detail > 0 && soup.triangles.size() > 200) soup = cluster_vertices(soup, detail == 1 ? 16 : 8);
-  std::vector<Vec3> face_normals;
-  std::vector<std::vector<unsigned>> triangles_at(soup.points.size());
-  face_normals.reserve(soup.triangles.size());
-  for (const auto& t : soup.triangles) {
-    const Vec3 along = soup.points[t[1]] - soup.points[t[0]];
-    for (const unsigned corner : t) triangles_at[corner].push_back(static_cast<unsigned>(face_normals.size()));
-    face_normals.push_back(
-        glm::cross(along, soup.points[t[2]] - soup.points[t[0]]));  // not normalized: weighted by area
-  }
   MeshVertices out;
-  out.reserve(3 * soup.triangles.size());
-  for (std::size_t i = 0; i < soup.triangles.size(); i++) {
-    const Vec3 face_normal = normalized(face_normals[i]);
-    for (const unsigned corner : soup.triangles[i]) {
-      Vec3 sum = face_normals[i];
-      if (triangles_at[corner].size() <= kMaxNeighbors) {
-        for (const unsigned neighbor : triangles_at[corner]) {
-          if (neighbor != i && glm::dot(face_normal, normalized(face_normals[neighbor])) > kMinCreaseCosine)
-            sum += face_normals[neighbor];
-        }
-      }
-      out.push_back(vertex_of({soup.points[corner], normalized(sum)}));
-    }
-  }
+  out.reserve(model.triangles.size());
+  for_each_corner(model, detail,
+                  [&](const Point& point, std::size_t, std::size_t) { out.push_back(vertex_of(point)); });
   return out;
 }
 
-IndexedMesh with_shared_vertices(const MeshVertices& triangles) {
-  IndexedMesh out;
+MeshColoring coloring_of(const model::ShapeModel& shape) {
+  if (shape.texture != nullptr) return MeshColoring::textured;
+  const bool own = shape.mesh != nullptr && shape.mesh_colors && model::has_colors(*shape.mesh);
+  return own ? MeshColoring::own : MeshColoring::plain;
+}
+
+std::vector<MeshPart> mesh_parts(const model::ShapeModel& shape) {
+  std::vector<MeshPart> parts;
+  if (coloring_of(shape) == MeshColoring::own) {
+    (void)parts_of_materials(*shape.mesh->look, parts);
+  } else {
+    parts.push_back({shape.texture, 1});
+  }
+  return parts;
+}
+
+std::vector<ColoredVertices> colored_meshes(const model::ShapeModel& shape, int detail) {
+  if (shape.mesh == nullptr) return {colored_primitive(shape.kind, detail)};
+  static const model::MeshLook no_look;
+  const model::MeshLook& look = shape.mesh->look != nullptr ? *shape.mesh->look : no_look;
+  const bool own = coloring_of(shape) == MeshColoring::own;
+  std::vector<MeshPart> parts;
+  std::vector<std::size_t> part_of;
+  if (own) part_of = parts_of_materials(look, parts);
+  std::vector<ColoredVertices> out(own ? parts.size() : 1);
+  for_each_corner(*shape.mesh, detail, [&](const Point& point, std::size_t triangle, std::size_t k) {
+    ColoredVertex v = colored(vertex_of(point));
+    const std::size_t corner = 3 * triangle + k;
+    if (corner < look.texcoords.size()) std::copy_n(look.texcoords[corner].begin(), 2, v.texcoord);
+    std::size_t part = 0;
+    if (own) {
+      const std::uint32_t number = look.triangle_materials[triangle];
+      const model::MeshMaterial& material = look.materials[number];
+      part = part_of[number];
+      for (int i = 0; i < 3; i++) {
+        const double factor =
+            corner < look.colors.size() ? look.colors[corner][static_cast<std::size_t>(i)] / 255.0 : 1;
+        v.color[i] = byte_of(material.color[i] * factor);
+        v.emission[i] = byte_of(material.emission[i]);
+      }
+    }
+    out[part].push_back(v);
+  });
+  return out;
+}
+
+namespace {
+
+template <class Vertex>
+IndexedVertices<Vertex> merged(const std::vector<Vertex>& triangles) {
+  IndexedVertices<Vertex> out;
   std::unordered_map<std::string_view, std::uint32_t> known;  // by the bytes of a vertex
   out.indices.reserve(triangles.size());
   known.reserve(triangles.size() / 3);
   for (std::size_t i = 0; i + 2 < triangles.size(); i += 3) {
     std::array<std::uint32_t, 3> t{};
     for (std::size_t k = 0; k < 3; k++) {
-      const MeshVertex& vertex = triangles[i + k];
+      const Vertex& vertex = triangles[i + k];
       const std::string_view bytes(reinterpret_cast<const char*>(&vertex), sizeof vertex);
       const auto [found, fresh] = known.try_emplace(bytes, static_cast<std::uint32_t>(out.vertices.size()));
       if (fresh) out.vertices.push_back(vertex);
@@ -290,6 +434,11 @@ IndexedMesh with_shared_vertices(const MeshVertices& triangles) {
   }
   return out;
 }
+
+}  // namespace
+
+IndexedMesh with_shared_vertices(const MeshVertices& triangles) { return merged(triangles); }
+IndexedVertices<ColoredVertex> with_shared_vertices(const ColoredVertices& triangles) { return merged(triangles); }
 
 MeshSize mesh_size(const model::ShapeModel& shape) {
   const double r = shape.radius;
@@ -310,6 +459,8 @@ MeshSize mesh_size(const model::ShapeModel& shape) {
     }
     case model::ShapeKind::cone:
       return {Vec3(r, r, half), 0};
+    case model::ShapeKind::ellipsoid:
+      return {shape.size / 2.0, 0};
     default:
       return {};
   }

@@ -60,6 +60,13 @@ std::optional<double> hit_sphere(double radius, const Vec3& from, const Vec3& di
   return distance > 0 ? std::optional(distance) : std::nullopt;
 }
 
+std::optional<double> hit_ellipsoid(const Vec3& radii, const Vec3& from, const Vec3& direction) {
+  const Vec3 scaled = direction / radii;
+  const double length = glm::length(scaled);
+  const std::optional<double> distance = hit_sphere(1, from / radii, scaled / length);
+  return distance ? std::optional(*distance / length) : std::nullopt;
+}
+
 // distance along the ray to the triangle, from either side (Möller–Trumbore)
 std::optional<double> hit_triangle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from,
                                    const Vec3& direction) {
@@ -112,6 +119,8 @@ std::optional<double> hit_primitive_mesh(const model::ShapeModel& shape, const V
 
 std::optional<double> hit_shape(const model::ShapeModel& shape, const Vec3& from, const Vec3& direction) {
   if (shape.kind == model::ShapeKind::sphere && shape.mesh == nullptr) return hit_sphere(shape.radius, from, direction);
+  if (shape.kind == model::ShapeKind::ellipsoid && shape.mesh == nullptr)
+    return hit_ellipsoid(shape.size / 2.0, from, direction);
   const std::optional<Interval> box = hit_box(bounds_of(shape), from, direction);
   if (!box) return std::nullopt;
   if (shape.mesh != nullptr) return hit_mesh(*shape.mesh, from, direction);

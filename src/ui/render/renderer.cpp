@@ -122,14 +122,31 @@ Renderer::DepthMap Renderer::make_depth(int side, bool compares) const {
   return map;
 }
 
-const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
-  const auto [found, fresh] = meshes_.try_emplace({key, detail});
-  GpuMesh& gpu_mesh = found->second;
-  if (!fresh) return gpu_mesh;
-  const IndexedMesh indexed_mesh =
-      with_shared_vertices(key.model != nullptr ? model_mesh(*key.model, detail) : primitive_mesh(key.kind, detail));
-  gpu_mesh = {GlVertexArray::make(), GlBuffer::make(), GlBuffer::make(),
-              static_cast<GLsizei>(indexed_mesh.indices.size())};
+namespace {
+
+void set_vertex_attributes(const MeshVertex*) {
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, corner)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, normal)));
+}
+
+void set_vertex_attributes(const ColoredVertex*) {
+  constexpr GLsizei kSize = sizeof(ColoredVertex);
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, kSize, offset(offsetof(ColoredVertex, corner)));
+  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, kSize, offset(offsetof(ColoredVertex, normal)));
+  constexpr GLuint kFirst = 7;  // after the attributes of instances
+  glVertexAttribPointer(kFirst, 2, GL_FLOAT, GL_FALSE, kSize, offset(offsetof(ColoredVertex, texcoord)));
+  glVertexAttribPointer(kFirst + 1, 4, GL_UNSIGNED_BYTE, GL_TRUE, kSize, offset(offsetof(ColoredVertex, color)));
+  glVertexAttribPointer(kFirst + 2, 4, GL_UNSIGNED_BYTE, GL_TRUE, kSize, offset(offsetof(ColoredVertex, emission)));
+  for (GLuint i = kFirst; i < kFirst + 3; i++) glEnableVertexAttribArray(i);
+}
+
+}  // namespace
+
+template <class Vertex>
+Renderer::GpuMesh Renderer::make_mesh(const std::vector<Vertex>& triangles) {
+  const IndexedVertices<Vertex> indexed_mesh = with_shared_vertices(triangles);
+  GpuMesh gpu_mesh = {GlVertexArray::make(), GlBuffer::make(), GlBuffer::make(),
+                      static_cast<GLsizei>(indexed_mesh.indices.size())};
   glBindVertexArray(*gpu_mesh.array);
   const auto fill = [](GLenum target, const GlBuffer& buffer, const auto& values) {
     glBindBuffer(target, *buffer);
@@ -137,8 +154,7 @@ const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
   };
   fill(GL_ELEMENT_ARRAY_BUFFER, gpu_mesh.indices, indexed_mesh.indices);
   fill(GL_ARRAY_BUFFER, gpu_mesh.vertices, indexed_mesh.vertices);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, corner)));
-  glVertexAttribPointer(1, 3, GL_FLOAT, GL_FALSE, sizeof(MeshVertex), offset(offsetof(MeshVertex, normal)));
+  set_vertex_attributes(static_cast<const Vertex*>(nullptr));
   for (GLuint i = 0; i < 7; i++) {
     glEnableVertexAttribArray(i);
     if (i >= 2) glVertexAttribDivisor(i, 1);
@@ -146,14 +162,75 @@ const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
   return gpu_mesh;
 }
 
-// frees meshes from files that the scene no longer uses
+const Renderer::GpuMesh& Renderer::mesh(const MeshKey& key, int detail) {
+  const auto [found, fresh] = meshes_.try_emplace({key, detail});
+  if (!fresh) return found->second;
+  if (key.coloring == MeshColoring::plain) {
+    found->second = make_mesh(key.model != nullptr ? model_mesh(*key.model, detail) : primitive_mesh(key.kind, detail));
+  } else {
+    make_colored_meshes(key, detail);
+  }
+  return found->second;
+}
+
+// builds all parts at once, because they share the computation of normals
+void Renderer::make_colored_meshes(const MeshKey& key, int detail) {
+  model::ShapeModel shape;
+  shape.kind = key.kind;
+  if (key.model != nullptr) shape.mesh = draw_list_.models().at(key.model);
+  const auto image = draw_list_.images().find(key.texture);
+  if (key.coloring == MeshColoring::textured && image != draw_list_.images().end()) shape.texture = image->second;
+  const std::vector<MeshPart> parts = mesh_parts(shape);
+  const std::vector<ColoredVertices> meshes = colored_meshes(shape, detail);
+  MeshKey part_key = key;
+  for (std::size_t i = 0; i < meshes.size(); i++) {
+    part_key.part = static_cast<std::uint32_t>(i);
+    part_key.texture = parts[i].texture.get();
+    meshes_[{part_key, detail}] = make_mesh(meshes[i]);
+  }
+}
+
+// frees meshes and textures from files that the scene no longer uses
 void Renderer::release_unused_meshes() {
   if (meshes_scene_ == draw_list_.scene()) return;
   meshes_scene_ = draw_list_.scene();
-  std::erase_if(meshes_, [this](const auto& entry) {
-    const model::MeshModel* const model = entry.first.first.model;
-    return model != nullptr && !draw_list_.models().contains(model);
+  const auto unused = [this](const model::Image* image) {
+    return image != nullptr && !draw_list_.images().contains(image);
+  };
+  std::erase_if(meshes_, [&](const auto& entry) {
+    const MeshKey& key = entry.first.first;
+    return (key.model != nullptr && !draw_list_.models().contains(key.model)) || unused(key.texture);
   });
+  std::erase_if(textures_, [&](const auto& entry) { return unused(entry.first); });
+}
+
+// begins a pass that draws shapes in color
+void Renderer::begin_shapes(bool mirrored) {
+  const bool discards = mirrored && !api_.clip_distance;
+  shape_programs_ = {shaders_.program(discards ? "mirrored" : "shape"),
+                     shaders_.program(discards ? "mirrored_colored" : "colored")};
+  glUseProgram(shape_programs_[0]);
+  colored_bound_ = false;
+  bound_texture_ = 0;
+}
+
+// binds the program and the texture for a mesh, if they aren't bound yet
+void Renderer::use_coloring(const MeshKey& key) {
+  const bool colored = key.coloring != MeshColoring::plain;
+  if (colored != colored_bound_) glUseProgram(shape_programs_[colored ? 1 : 0]);
+  colored_bound_ = colored;
+  if (!colored) return;
+  glActiveTexture(GL_TEXTURE2);
+  GlTexture* texture = &white_;
+  if (key.texture != nullptr) {
+    texture = &textures_[key.texture];
+    if (!*texture) *texture = make_texture(*key.texture, max_size_);
+  } else if (!white_) {
+    white_ = make_texture({"", 1, 1, 0, {255, 255, 255, 255}}, max_size_);
+  }
+  if (bound_texture_ != **texture) glBindTexture(GL_TEXTURE_2D, **texture);
+  bound_texture_ = **texture;
+  glActiveTexture(GL_TEXTURE0);
 }
 
 void Renderer::upload(const FrameUniforms& frame) {
@@ -161,10 +238,13 @@ void Renderer::upload(const FrameUniforms& frame) {
   glBufferData(GL_UNIFORM_BUFFER, sizeof frame, &frame, GL_STREAM_DRAW);
 }
 
-void Renderer::draw_batches(const std::vector<Batch>& batches, int detail_bias, bool shadow_casters_only) {
+// a depth pass draws only batches that cast shadows, coarser by one level of detail
+void Renderer::draw_batches(const std::vector<Batch>& batches, Pass pass) {
   for (const Batch& batch : batches) {
-    if (shadow_casters_only && !batch.casts_shadow) continue;
-    const GpuMesh& gpu = mesh(batch.mesh, std::min(batch.detail + detail_bias, kDetailLevels - 1));
+    if (pass == Pass::depth && !batch.casts_shadow) continue;
+    const int detail = batch.detail + (pass == Pass::depth ? 1 : 0);
+    const GpuMesh& gpu = mesh(batch.mesh, std::min(detail, kDetailLevels - 1));
+    if (pass == Pass::color) use_coloring(batch.mesh);
     glBindVertexArray(*gpu.array);
     glBindBuffer(GL_ARRAY_BUFFER, *instances_);
     bind_instance_attributes(batch.first);
@@ -188,8 +268,8 @@ void Renderer::draw_depth(const DepthMap& map, int side, const glm::mat4& clip, 
     glEnable(GL_POLYGON_OFFSET_FILL);
     glPolygonOffset(1.5F, 2.0F);
   }
-  draw_batches(draw_list_.opaque(), 1, true);
-  draw_batches(draw_list_.transparent(), 1, true);
+  draw_batches(draw_list_.opaque(), Pass::depth);
+  draw_batches(draw_list_.transparent(), Pass::depth);
   if (clamp_depth && api_.depth_clamp) glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_POLYGON_OFFSET_FILL);
   glEnable(GL_CULL_FACE);
@@ -213,12 +293,12 @@ void Renderer::draw_mirrored(const Lighting& lighting) {
   frame.eye.z = 2 * floor - frame.eye.z;
   frame.eye.w = 1;
   upload(frame);
-  glUseProgram(shaders_.program(api_.clip_distance ? "shape" : "mirrored"));
+  begin_shapes(true);
   glFrontFace(GL_CW);
   if (api_.clip_distance) glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_BLEND);
-  draw_batches(draw_list_.opaque(), 0, false);
-  draw_batches(draw_list_.transparent(), 0, false);
+  draw_batches(draw_list_.opaque(), Pass::color);
+  draw_batches(draw_list_.transparent(), Pass::color);
   glDisable(GL_BLEND);
   if (api_.clip_distance) glDisable(GL_CLIP_DISTANCE0);
   glFrontFace(GL_CCW);
@@ -367,16 +447,16 @@ Result<void> Renderer::draw_into(RenderTarget& target, const engine::Snapshot& p
     upload(lighting.frame);
     draw_planes(lighting, appearance);
   }
-  glUseProgram(shaders_.program("shape"));
-  draw_batches(draw_list_.opaque(), 0, false);
+  begin_shapes(false);
+  draw_batches(draw_list_.opaque(), Pass::color);
   if (!lighting.has_mirror) {
     draw_planes(lighting, appearance);
     draw_sky();
   }
-  glUseProgram(shaders_.program("shape"));
+  begin_shapes(false);
   glDepthMask(GL_FALSE);
   glEnable(GL_BLEND);
-  draw_batches(draw_list_.transparent(), 0, false);
+  draw_batches(draw_list_.transparent(), Pass::color);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
   draw_overlay(previous, current, mix, target);

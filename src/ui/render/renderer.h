@@ -1,11 +1,14 @@
 // Renderer: draws snapshots into an offscreen image, in the current OpenGL context (a window's or an offscreen one).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "ui/render/camera.h"
 #include "ui/render/draw_list.h"
@@ -15,6 +18,7 @@
 #include "ui/render/pixels.h"
 #include "ui/render/render_target.h"
 #include "ui/render/shaders.h"
+#include "ui/render/texture.h"
 
 namespace limber::render {
 
@@ -70,6 +74,7 @@ class Renderer {
     GlBuffer vertices, indices;
     int count = 0;
   };
+  enum class Pass : std::uint8_t { depth, color };
   // a depth texture with its framebuffer
   struct DepthMap {
     GlTexture texture;
@@ -83,10 +88,15 @@ class Renderer {
   void draw_overlay(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
                     const RenderTarget& target);
   const GpuMesh& mesh(const MeshKey& key, int detail);
+  template <class Vertex>
+  static GpuMesh make_mesh(const std::vector<Vertex>& triangles);
+  void make_colored_meshes(const MeshKey& key, int detail);
+  void begin_shapes(bool mirrored);
+  void use_coloring(const MeshKey& key);
   void release_unused_meshes();
   void upload(const FrameUniforms& frame);
   void draw_depth(const DepthMap& map, int side, const glm::mat4& clip, bool clamp_depth);
-  void draw_batches(const std::vector<Batch>& batches, int detail_bias, bool shadow_casters_only);
+  void draw_batches(const std::vector<Batch>& batches, Pass pass);
   void draw_mirrored(const Lighting& lighting);
   void draw_planes(const Lighting& lighting, const engine::AppearanceSettings& appearance);
   void upload_instances();
@@ -100,6 +110,12 @@ class Renderer {
   DrawList draw_list_;
   std::shared_ptr<const engine::RenderScene> meshes_scene_;
   std::map<std::pair<MeshKey, int>, GpuMesh> meshes_;
+  std::map<const model::Image*, GlTexture> textures_;
+  GlTexture white_;  // for colored meshes without a texture
+  // state of a color pass: the programs for plain and colored meshes, and what is bound
+  std::array<std::uint32_t, 2> shape_programs_{};
+  bool colored_bound_ = false;
+  std::uint32_t bound_texture_ = 0;
   GlBuffer instances_, uniforms_;
   GlVertexArray no_attributes_;  // without attributes, for shaders that generate their vertices
   DepthMap shadow_map_, ground_map_;

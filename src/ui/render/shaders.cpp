@@ -31,13 +31,15 @@ struct ProgramFiles {
   const char* defines = "";
   bool GlApiInfo::*replaced_feature = nullptr;  // only built if the API lacks this feature
 };
-const std::array<ProgramFiles, 8> kPrograms = {
+const std::array<ProgramFiles, 10> kPrograms = {
     {{"shape", "shape.vert", "shape.frag"},
+     {"colored", "shape.vert", "shape.frag", "#define COLORED\n"},
      {"depth", "shape.vert", "depth.frag"},
      {"floor", "floor.vert", "floor.frag"},
      {"sky", "sky.vert", "sky.frag"},
      {"overlay", "overlay.vert", "overlay.frag"},
      {"mirrored", "shape.vert", "shape.frag", "#define MIRRORED\n", &GlApiInfo::clip_distance},
+     {"mirrored_colored", "shape.vert", "shape.frag", "#define MIRRORED\n#define COLORED\n", &GlApiInfo::clip_distance},
      {"ground", "shape.vert", "ground.frag", "#define GROUND\n", &GlApiInfo::depth_clamp},
      {"encode", "encode.vert", "encode.frag", "", &GlApiInfo::srgb_switch}}};
 
@@ -130,7 +132,7 @@ Result<GlProgram> Shaders::build(const Program& files, bool embedded) const {
   if (const GLuint block = glGetUniformBlockIndex(*program, "Frame"); block != GL_INVALID_INDEX)
     glUniformBlockBinding(*program, block, 0);
   glUseProgram(*program);
-  constexpr std::array<const char*, 2> kTextures = {"shadow_depth", "ground_depth"};
+  constexpr std::array<const char*, 3> kTextures = {"shadow_depth", "ground_depth", "base_color"};
   for (std::size_t i = 0; i < kTextures.size(); i++)
     glUniform1i(glGetUniformLocation(*program, kTextures[i]), static_cast<GLint>(i));
   return program;

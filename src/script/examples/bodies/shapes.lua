@@ -2,6 +2,7 @@
 local shapes = {
   sim:add_sphere_shape("sphere", 0.2),
   sim:add_box_shape("box", vec3(0.3, 0.3, 0.4)),
+  sim:add_ellipsoid_shape("ellipsoid", vec3(0.2, 0.15, 0.1)),
   sim:add_cylinder_shape("cylinder", 0.15, 0.4),
   sim:add_capsule_shape("capsule", 0.1, 0.3),
   sim:add_cone_shape("cone", 0.2, 0.4),

@@ -10,7 +10,7 @@ namespace limber::sim::bullet {
 inline std::size_t at(int axis) { return static_cast<std::size_t>(axis); }
 
 /// Motor type of an axis. A motor on a locked axis does nothing.
-enum class AxisDrive : std::uint8_t { off, spin, servo, spring };
+enum class AxisDrive : std::uint8_t { off, spin, servo, spring, torque };
 
 /// All settings of one axis. Linear axes: m, N, m/s; angular axes: rad, N·m, rad/s.
 struct AxisSettings {
@@ -22,12 +22,17 @@ struct AxisSettings {
   float stop_cfm = 0;
   AxisDrive drive = AxisDrive::off;
   float velocity = 0;   ///< Spin: target speed (0 brakes). Servo: speed limit, sign ignored, 0: no limit.
-  float max_force = 0;  ///< Of spin and servo, >= 0.
+  float max_force = 0;  ///< Of spin, servo and torque, >= 0.
+  /// Speed at which the force of the motor is used up: the largest force in the direction of motion decreases linearly
+  /// from max_force at rest to 0 at this speed. 0: it doesn't depend on the speed.
+  float no_load_speed = 0;
+  float torque = 0;     ///< Of the drive `torque`: its force or torque, limited to max_force.
   double target = 0;    ///< Of the servo, counts full turns. Beyond a limit the servo presses against the limit.
   double rest = 0;      ///< Of the spring, counts full turns.
   float stiffness = 0;  ///< Of the spring, N/m or N·m/rad; reduced for stability (JointDrives::stiffness_applied).
   float spring_damping = 0;  ///< Of the spring, N·s/m or N·m·s/rad; implicit, so it is never reduced.
   float friction = 0;        ///< Coulomb friction, N or N·m, with any drive.
+  float armature = 0;  ///< Inertia of the rotor, kg or kg·m², in addition to that of the bodies; with any drive.
 
   bool locked() const { return lower == upper; }
   bool free() const { return lower > upper; }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/bullet/surface_motion.h"
 #include "sim/solver/forest/axis_active_set.h"
 
 namespace limber::sim::bullet {
@@ -40,7 +41,13 @@ double GearConstraint::error() const {
 }
 
 void GearConstraint::add_jacobian(btRigidBody& body, const btVector3& linear, const btVector3& angular) {
-  if (body.getInvMass() == 0) return;
+  if (body.getInvMass() == 0) {
+    if (is_moving_static(body)) {
+      static_rate_ +=
+          static_cast<double>(linear.dot(body.getLinearVelocity()) + angular.dot(body.getAngularVelocity()));
+    }
+    return;
+  }
   auto* const end = jacobians_.data() + jacobian_count_;
   auto* jacobian = std::find_if(jacobians_.data(), end, [&](const BodyJacobian& s) { return s.body == &body; });
   if (jacobian == end) {
@@ -63,6 +70,7 @@ void GearConstraint::add_jacobians(JointConstraint& joint, int axis, double fact
 void GearConstraint::plan(btScalar h) {
   h_ = h;
   jacobian_count_ = 0;
+  static_rate_ = 0;
   add_jacobians(*joint_a_, axis_a_, -settings_.ratio);
   add_jacobians(*joint_b_, axis_b_, 1);
   double mobility = 0;
@@ -73,7 +81,8 @@ void GearConstraint::plan(btScalar h) {
                                     angular_response.dot(jacobian.angular));
   }
   const double step = static_cast<double>(h);
-  row_.velocity = std::clamp(kCorrectedFraction * error() / step, -kMaxCorrectionSpeed, kMaxCorrectionSpeed);
+  row_.velocity =
+      std::clamp(kCorrectedFraction * error() / step, -kMaxCorrectionSpeed, kMaxCorrectionSpeed) - static_rate_;
   row_.mobility = mobility;
   row_.softness = kSoftness * mobility;
   row_.bound = settings_.max_force > 0 ? settings_.max_force * step : 2 * solver::AxisRow::kInfinity;

@@ -51,7 +51,7 @@ class GearConstraint : public btTypedConstraint {
     btVector3 linear{0, 0, 0};
     btVector3 angular{0, 0, 0};
   };
-  /// rate + softness·impulse = velocity, where rate = rate of b - ratio·rate of a.
+  /// rate + softness·impulse = velocity, where rate = rate of b - ratio·rate of a, by the dynamic bodies' motion.
   struct Row {
     double velocity = 0;
     double softness = 0;
@@ -92,6 +92,7 @@ class GearConstraint : public btTypedConstraint {
   Row row_;
   std::array<BodyJacobian, 4> jacobians_;
   int jacobian_count_ = 0;
+  double static_rate_ = 0;  // of the row, by the motion of static bodies
   btScalar h_ = 0;
   float last_impulse_ = 0;
   float warm_impulse_ = 0;

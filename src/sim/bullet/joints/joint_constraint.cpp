@@ -30,8 +30,10 @@ T clamped(T v, T min_value, T max_value) {
 AxisSettings clamped(AxisSettings s) {
   for (float* position : {&s.lower, &s.upper}) *position = clamped(*position, -1e6f, 1e6f);
   for (double* position : {&s.target, &s.rest}) *position = clamped(*position, -1e6, 1e6);
-  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction}) *size = clamped(*size, 0.0f, 1e12f);
+  for (float* size : {&s.max_force, &s.stiffness, &s.spring_damping, &s.friction, &s.armature, &s.no_load_speed})
+    *size = clamped(*size, 0.0f, 1e12f);
   s.velocity = clamped(s.velocity, -1e5f, 1e5f);
+  s.torque = clamped(s.torque, -1e12f, 1e12f);
   s.stop_erp = clamped(s.stop_erp, 0.0f, 1.0f);
   s.stop_cfm = clamped(s.stop_cfm, 0.0f, 1e6f);
   return s;
@@ -56,24 +58,27 @@ void JointConstraint::set_axis(int axis, const AxisSettings& settings) {
   if (axis >= 3 && current.limited()) pose_.turn_into(axis, current.lower, current.upper);
 }
 
-bool JointConstraint::set_target(int axis, double target, double rest, double velocity) {
+bool JointConstraint::set_target(int axis, double target, double rest, double velocity, double torque) {
   AxisSettings& current = axes_[at(axis)];
   const AxisSettings before = current;
   current.target = clamped(target, -1e6, 1e6);
   current.rest = clamped(rest, -1e6, 1e6);
   current.velocity = clamped(static_cast<float>(velocity), -1e5f, 1e5f);
+  current.torque = clamped(static_cast<float>(torque), -1e12f, 1e12f);
   return !(current == before);
 }
 
 void JointConstraint::reset(const Vec3& near_angles) {
   pose_.reset(near_angles);
   drives_.reset(pose_);
+  reaction_.reset();
   warm_start_.reset();
   repair_impulse_.fill(0);
 }
 
 void JointConstraint::end_tick() {
   drives_.end_tick();
+  reaction_.end_tick();
   refresh();
 }
 
@@ -114,9 +119,13 @@ const JointRows& JointConstraint::plan(JointRow* memory) {
 
 void JointConstraint::plan_unlocked(int axis) {
   const AxisSettings& s = axes_[at(axis)];
-  if (s.drive == AxisDrive::spring) drives_.plan(driven(axis), rows_);
+  if (s.drive == AxisDrive::spring || s.drive == AxisDrive::torque) drives_.plan(driven(axis), rows_);
   if (damping_ > 0)
     rows_.add(axis, 0, 1 / std::max(damping_ * step_.h, btScalar(1e-18)), -JointRow::kUnbounded, JointRow::kUnbounded);
+  // the rotor resists a change of the rate with which the step begins: impulse = armature·(rate before - rate after)
+  if (s.armature > 0) {
+    rows_.add(axis, pose_.rates()[at(axis)], 1 / s.armature, -JointRow::kUnbounded, JointRow::kUnbounded);
+  }
   if (s.friction > 0) {
     const btScalar max_impulse = s.friction * step_.h;
     rows_.add(axis, 0, 0, -max_impulse, max_impulse);
@@ -187,7 +196,7 @@ void JointConstraint::set_impulses(const btSolverConstraint* rows, int count) {
   for (int r = 0; r < count && r < rows_.size(); ++r) {
     set_impulse(rows_[r], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
   }
-  drives_.end_substep(step_.h);
+  end_substep();
 }
 
 void JointConstraint::set_impulses(solver::IndexedSpan<const double> impulses) {
@@ -201,7 +210,12 @@ void JointConstraint::set_impulses(solver::IndexedSpan<const double> impulses) {
     }
     set_impulse(row, to_scalar(impulses[r]), inverse_mobility);
   }
+  end_substep();
+}
+
+void JointConstraint::end_substep() {
   drives_.end_substep(step_.h);
+  reaction_.end_substep(pose_, step_.h);
 }
 
 void JointConstraint::set_impulse(const JointRow& row, btScalar impulse, btScalar inverse_mobility) {
@@ -211,6 +225,7 @@ void JointConstraint::set_impulse(const JointRow& row, btScalar impulse, btScala
     repair_impulse_[row.axis] = std::min(std::fabs(impulse), std::fabs(row.velocity) * inverse_mobility);
   }
   warm_start_.store(row, impulse);
+  reaction_.add(row.axis, impulse);
   if (row.kind == JointRow::Kind::motor) drives_.store(row, impulse, inverse_mobility);
 }
 

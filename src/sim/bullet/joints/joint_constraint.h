@@ -9,6 +9,7 @@
 #include "sim/bullet/joints/axis_settings.h"
 #include "sim/bullet/joints/joint_drives.h"
 #include "sim/bullet/joints/joint_pose.h"
+#include "sim/bullet/joints/joint_reaction.h"
 #include "sim/bullet/joints/joint_rows.h"
 #include "sim/bullet/joints/joint_warm_start.h"
 
@@ -27,9 +28,9 @@ class JointConstraint : public btTypedConstraint {
   /// 1e12). If a free angular axis becomes limited, its angle changes by full turns to be nearest to the limits'
   /// center.
   void set_axis(int axis, const AxisSettings& settings);
-  /// Sets only the goals of an axis: servo target, rest position of the spring, velocity. A new target or rest position
-  /// is interpolated linearly over the next tick (TargetInterpolator). Returns true if one of them changed.
-  bool set_target(int axis, double target, double rest, double velocity);
+  /// Sets only the goals of an axis: servo target, rest position of the spring, velocity, torque. A new target or rest
+  /// position is interpolated linearly over the next tick (TargetInterpolator). Returns true if one of them changed.
+  bool set_target(int axis, double target, double rest, double velocity, double torque = 0);
   /// True if a motor or spring is on.
   bool has_drive() const {
     return std::any_of(axes_.begin(), axes_.end(), [](const AxisSettings& s) { return s.drive != AxisDrive::off; });
@@ -66,6 +67,8 @@ class JointConstraint : public btTypedConstraint {
   double rate(int axis) const { return pose_.rate(axis); }
   /// Applied forces, and limits that motors and springs met.
   const JointDrives& drives() const { return drives_; }
+  /// Mean force and torque that the joint exerted on the child in the last tick.
+  const JointReaction& reaction() const { return reaction_; }
 
   // The following functions are for IslandSolver, DirectSolver and IslandWorld.
 
@@ -98,6 +101,7 @@ class JointConstraint : public btTypedConstraint {
 
  private:
   void set_impulse(const JointRow& row, btScalar impulse, btScalar inverse_mobility);
+  void end_substep();
   JointDrives::Axis driven(int axis) const { return {axis, axes_[at(axis)], pose_, step_}; }
   void plan_unlocked(int axis);
   void plan_limit(int axis, bool upper);
@@ -107,6 +111,7 @@ class JointConstraint : public btTypedConstraint {
   JointPose pose_;
   JointAxes axes_{};
   JointDrives drives_;
+  JointReaction reaction_;
   JointWarmStart warm_start_;
   std::array<float, 6> repair_impulse_{};  // of the last substep, on a limit that is exceeded
   StepTiming step_;

@@ -31,7 +31,8 @@ btScalar capped_stiffness(const JointDrives::Axis& axis) {
   // free parts are an upper bound of the mobility: if it permits the stiffness, the joint does
   const AxisJacobian j = axis.pose.jacobian(axis.index);
   if (requested * h2 * axis.pose.mobility(j, j) <= 1) return requested;
-  return std::min(requested, static_cast<btScalar>(axis.pose.effective_inertia(axis.index)) / h2);
+  const auto inertia = static_cast<btScalar>(axis.pose.effective_inertia(axis.index)) + axis.settings.armature;
+  return std::min(requested, inertia / h2);
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ void JointDrives::end_plan(const JointPose& pose) {
 }
 
 void JointDrives::store(const JointRow& row, btScalar impulse, btScalar inverse_mobility) {
-  impulse_[row.axis] = impulse;
+  impulse_[row.axis] += impulse;
   const std::int8_t pressing = pressing_[row.axis];
   tick_impulse_[row.axis] += pressing > 0 ? row.upper : (pressing < 0 ? row.lower : impulse);
   if (row.softness == 0) pair_inertia_[row.axis] = inverse_mobility;
@@ -77,9 +78,45 @@ void JointDrives::end_tick() {
 void JointDrives::plan(const Axis& axis, JointRows& rows) {
   const AxisSettings& s = axis.settings;
   if (s.drive == AxisDrive::spring) return plan_spring(axis, rows);
+  if (s.drive == AxisDrive::torque) return plan_torque(axis, rows);
+  plan_motor(axis, s.drive == AxisDrive::servo ? servo_velocity(axis) : spin_velocity(axis), rows);
+}
+
+// Spin and servo: a hard row with the largest force as bounds. If that depends on the speed, the impulse is a
+// decreasing function of the rate with two slopes, from the largest impulse at rest to 0 at the no-load speed, which
+// the row interrupts at its velocity: a soft row, which is the slope up to that velocity, and a hard one with the rest
+// of the force. Against the motion the force is the full one. Both are implicit, hence stable.
+void JointDrives::plan_motor(const Axis& axis, btScalar velocity, JointRows& rows) {
+  const AxisSettings& s = axis.settings;
   const btScalar max_impulse = s.max_force * axis.step.h;
-  const btScalar velocity = s.drive == AxisDrive::servo ? servo_velocity(axis) : spin_velocity(axis);
-  rows.add(axis.index, velocity, 0, -max_impulse, max_impulse, JointRow::Kind::motor);
+  if (!(s.no_load_speed > 0 && max_impulse > 0 && velocity != 0)) {
+    rows.add(axis.index, velocity, 0, -max_impulse, max_impulse, JointRow::Kind::motor);
+    return;
+  }
+  const btScalar sign = velocity > 0 ? btScalar(1) : btScalar(-1);
+  const btScalar reached = std::min(std::fabs(velocity), s.no_load_speed);
+  const btScalar slope = reached / s.no_load_speed * max_impulse;
+  const btScalar softness = s.no_load_speed / max_impulse;
+  rows.add(axis.index, sign * reached, softness, std::min(sign * slope, btScalar(0)),
+           std::max(sign * slope, btScalar(0)), JointRow::Kind::motor);
+  const btScalar rest = max_impulse - slope;
+  rows.add(axis.index, velocity, 0, sign > 0 ? -max_impulse : -rest, sign > 0 ? rest : max_impulse,
+           JointRow::Kind::motor);
+}
+
+// A constant impulse, or the smaller one that the speed leaves.
+void JointDrives::plan_torque(const Axis& axis, JointRows& rows) {
+  const AxisSettings& s = axis.settings;
+  const btScalar h = axis.step.h;
+  const btScalar impulse = std::clamp(s.torque, -s.max_force, s.max_force) * h;
+  if (impulse == 0) return;
+  if (!(s.no_load_speed > 0)) {
+    rows.add(axis.index, 0, 0, impulse, impulse, JointRow::Kind::motor);
+    return;
+  }
+  const btScalar softness = s.no_load_speed / (s.max_force * h);
+  rows.add(axis.index, std::copysign(s.no_load_speed, impulse), softness, std::min(impulse, btScalar(0)),
+           std::max(impulse, btScalar(0)), JointRow::Kind::motor);
 }
 
 // The spring force is explicit (symplectic, conserves energy), the damping implicit (stable for any value): one row
@@ -186,7 +223,7 @@ btScalar JointDrives::braking_speed(const Axis& axis, btScalar distance) {
 // the change of speed.
 void JointDrives::estimate_inertia(const Axis& axis) {
   const std::size_t i = at(axis.index);
-  const float pair = pair_inertia_[i];
+  const float pair = pair_inertia_[i] + axis.settings.armature;
   const float impulse = impulse_[i];
   const float rate = axis.rate();
   const float speed_change = rate - previous_rate_[i];

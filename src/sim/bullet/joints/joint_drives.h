@@ -59,6 +59,8 @@ class JointDrives {
     double upper;
   };
   void plan_spring(const Axis& axis, JointRows& rows);
+  void plan_torque(const Axis& axis, JointRows& rows);
+  void plan_motor(const Axis& axis, btScalar velocity, JointRows& rows);
   btScalar spin_velocity(const Axis& axis);
   btScalar servo_velocity(const Axis& axis);
   Range servo_range(const Axis& axis);

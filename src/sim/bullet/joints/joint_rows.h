@@ -37,8 +37,9 @@ struct JointRow {
 /// satisfies its last row exactly: rows of unlocked axes, motors, locks. [sim]
 class JointRows {
  public:
-  /// Maximum number of rows: for each of six axes a motor or spring, damping, friction and two limits.
-  static constexpr int kMax = 6 * 5;
+  /// Maximum number of rows: for each of six axes a motor or spring (two rows), damping, armature, friction and
+  /// two limits.
+  static constexpr int kMax = 6 * 7;
 
   JointRows() = default;
   /// No rows yet. `memory`: space for kMax rows, which must stay valid as long as the rows are used.

@@ -159,10 +159,12 @@ void SpanningTrees::unite_joints() {
   group_[bodies] = bodies;
   joint_start_.assign(bodies + 2, 0);
   node_of_joint_.clear();
+  has_loops_ = false;
   for (const Island::Joint& joint : island_.joints) {
     const int a = root_of(vertex(joint.body_a));
     const int b = root_of(vertex(joint.body_b));
     node_of_joint_.push_back(a == b ? -1 : 0);
+    has_loops_ = has_loops_ || a == b;
     if (a == b) continue;
     group_[std::min(a, b)] = std::max(a, b);
     joint_start_[vertex(joint.body_a) + 1]++;

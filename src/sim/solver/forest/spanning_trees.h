@@ -43,6 +43,8 @@ class SpanningTrees {
   int tree_of(int node) const { return node < 0 ? -1 : tree_of_[node]; }
   /// Child node of a joint; -1: the joint closes a loop.
   int node_of_joint(int index) const { return node_of_joint_[index]; }
+  /// True if a joint closes a loop.
+  bool has_loops() const { return has_loops_; }
 
   /// Velocity of a body after the solve.
   Spatial velocity(int body) const {
@@ -68,6 +70,7 @@ class SpanningTrees {
   IndexedArray<int> joint_of_;       // by node
   IndexedArray<int> node_of_;        // by body
   IndexedArray<int> node_of_joint_;  // by joint
+  bool has_loops_ = false;
   // scratch of build()
   IndexedArray<int> group_;        // by body: union-find
   IndexedArray<int> joint_start_;  // by body: the joints of its trees are body_joints_[joint_start_[body]] ...

@@ -1,12 +1,15 @@
 // Scene: the object tree; the parameters panel shows the properties of the selected object.
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <span>
 #include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
+#include "ui/panel/gui.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
@@ -27,6 +30,7 @@ class ScenePanel : public Panel {
   }
 
   void draw(GuiContext& context) override {
+    draw_save(context);
     search_field(context.names, "scene.search", "Filter bodies, parts, joints", words_, -1);
     if (!ImGui::BeginChild("##tree", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     const std::shared_ptr<const TreeSnapshot>& tree = context.value_snapshot->tree;
@@ -60,6 +64,56 @@ class ScenePanel : public Panel {
   }
 
  private:
+  // The button and the small window that ask for the file of the scene to write, if a model plays.
+  void draw_save(GuiContext& context) {
+    if (context.options == nullptr || !context.options->save_scene) return;
+    if (ImGui::Button("Save as scene…", {-1, 0})) {
+      if (file_.empty()) file_ = context.options->scene_file;
+      save_error_.clear();
+      ImGui::OpenPopup("save_scene");
+    }
+    context.names.add("scene.save");
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("Write a Lua scene that loads this model, with comments to start from");
+    if (!ImGui::BeginPopup("save_scene")) return;
+    if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+    ImGui::SetNextItemWidth(ImGui::GetFontSize() * 18);
+    bool saves = ImGui::InputText("File", &file_, ImGuiInputTextFlags_EnterReturnsTrue);
+    context.names.add("scene.save_file");
+    saves |= ImGui::Button("Save");
+    context.names.add("scene.save_write");
+    ImGui::SameLine();
+    if (ImGui::Button("Cancel")) ImGui::CloseCurrentPopup();
+    context.names.add("scene.save_cancel");
+    if (!save_error_.empty()) {
+      ImGui::PushTextWrapPos(ImGui::GetFontSize() * 24);
+      ImGui::TextUnformatted(save_error_.c_str());
+      ImGui::PopTextWrapPos();
+    }
+    if (saves) save(context);
+    ImGui::EndPopup();
+  }
+
+  // Writes the scene, after a question if the file exists.
+  void save(GuiContext& context) {
+    std::error_code error;
+    if (std::filesystem::exists(file_, error)) {
+      context.requests.confirmation = {fmt::format("{} exists. Replace it?", file_), "Replace", {}, [this, &context] {
+                                         write(context, true);
+                                         if (!save_error_.empty()) context.show_notice(save_error_);
+                                       }};
+      return ImGui::CloseCurrentPopup();
+    }
+    write(context, false);
+    if (save_error_.empty()) ImGui::CloseCurrentPopup();
+  }
+
+  void write(GuiContext& context, bool overwrite) {
+    const Result<void> saved = context.options->save_scene(file_, overwrite);
+    save_error_ = saved ? std::string() : saved.error();
+    if (saved) context.show_notice(fmt::format("Saved: {}", file_));
+  }
+
   static float indent_of(const TreeList::Line& l) {
     return ImGui::GetFontSize() * 0.85F * (static_cast<float>(l.depth) + 1.2F);
   }
@@ -136,6 +190,8 @@ class ScenePanel : public Panel {
   std::string words_;
   std::shared_ptr<const TreeSnapshot> selection_tree_;
   std::string selection_path_;
+  std::string file_;        // of the scene to save
+  std::string save_error_;  // of the last attempt
   std::uint32_t selected_ = 0;
   int scroll_to_ = -1;
 };

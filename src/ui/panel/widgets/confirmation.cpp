@@ -15,8 +15,10 @@ constexpr ImGuiWindowFlags kWindow = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFl
                                      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoNav;
 
 void confirm(GuiContext& context) {
-  if (auto confirmation = std::exchange(context.requests.confirmation, std::nullopt))
-    context.send(std::move(confirmation->message));
+  auto confirmation = std::exchange(context.requests.confirmation, std::nullopt);
+  if (!confirmation) return;
+  if (confirmation->action) return confirmation->action();
+  context.send(std::move(confirmation->message));
 }
 
 }  // namespace
