@@ -103,6 +103,12 @@ std::string find_file_or_folder(std::string_view name, std::vector<std::string>&
   return {};
 }
 
+std::string absolute_path(const std::string& path) {
+  std::error_code error;
+  const fs::path absolute = fs::absolute(path, error);
+  return error || path.empty() ? path : absolute.lexically_normal().string();
+}
+
 std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched) {
   if (name.empty()) return "the scene's name is empty; leave it out to play scripts/arms.lua";
   return fmt::format(

@@ -35,6 +35,10 @@ std::string find_in_path(std::string_view name);
 /// that were tried. [any]
 std::string find_file_or_folder(std::string_view name, std::vector<std::string>& searched);
 
+/// Returns the path from the root folder, without `.` and `..`; as given if it is empty or the current folder is gone.
+/// [any]
+std::string absolute_path(const std::string& path);
+
 /// Returns the error message for a missing scene or model: the places searched, and what can be played.
 std::string scene_not_found(std::string_view name, const std::vector<std::string>& searched);
 

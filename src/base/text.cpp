@@ -134,6 +134,16 @@ std::string normalized_name(std::string_view name) {
   return normalized;
 }
 
+bool same_in_any_case(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char c, char d) { return lower(c) == lower(d); });
+}
+
+std::pair<std::string, std::string> split_fix(const std::string& error, std::string_view default_fix) {
+  const std::size_t end = error.rfind(". ");
+  if (end == std::string::npos) return {error, std::string(default_fix)};
+  return {error.substr(0, end), error.substr(end + 2)};
+}
+
 bool same_name(std::string_view a, std::string_view b) {
   std::size_t i = 0;
   std::size_t k = 0;

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace limber {
@@ -17,6 +18,13 @@ std::string normalized_name(std::string_view name);
 bool same_name(std::string_view a, std::string_view b);
 /// Like same_name() for OSC addresses; also ignores a trailing slash of `received`.
 bool same_address(std::string_view received, std::string_view address);
+
+/// True if both texts are equal but for the case of ASCII letters.
+bool same_in_any_case(std::string_view a, std::string_view b);
+
+/// Splits an error message into its text and its last sentence, which says how to fix it; with `default_fix` if there
+/// is only one sentence.
+std::pair<std::string, std::string> split_fix(const std::string& error, std::string_view default_fix);
 
 /// Matches one name against an OSC pattern: `?` `*` `[a-z]` `[!a]` `{ab,cd}`. The work is bounded: a pattern that needs
 /// more than 20 000 steps, or 200 nested stars and braces, matches nothing. A malformed pattern matches only itself.

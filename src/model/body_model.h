@@ -118,6 +118,11 @@ struct JointModel {
   int mimic = -1;
   double mimic_multiplier = 1;
   double mimic_offset = 0;
+
+  /// True if a servo can hold the joint's value: planar and floating joints have several, mimic joints follow.
+  bool takes_servo() const {
+    return mimic < 0 && type != JointType::fixed && type != JointType::floating && type != JointType::planar;
+  }
 };
 
 /// A named frame: that of a link that was merged into its parent because its joint is fixed, or a site of an MJCF file;

@@ -39,7 +39,7 @@ std::map<std::string, std::string> files_of(const std::string& folder) {
   return files;
 }
 
-/// Engine options of the model's scene, which is written to a state folder of its own.
+/// A model, and a state folder of the test's own for its scene.
 struct ViewerTest : testing::Test {
   ViewerTest() { setenv("XDG_STATE_HOME", (folder.path() + "/state").c_str(), 1); }
 

@@ -254,7 +254,7 @@ void play(std::span<const std::uint8_t> bytes) {
       "sim:add_body(name):add_part('p', ball, { position = { i, 0, 1 }, report_contacts = true }) end ";
   context.answer.top_level = 1;
   script::ScriptPlace fault;
-  (void)vm.run(before + writer.scene(all_fail), "fuzz.lua", fault);
+  (void)vm.run(before + writer.scene(all_fail), "fuzz.lua", "", fault);
   context.answer.top_level = 0;
   world.flush();
   world.step();

@@ -84,9 +84,8 @@ TEST(Image, DataBeyondThePixelsAreNotDecompressed) {
   std::string bomb = limber::test::png(kSide, std::vector<Rgb>(std::size_t{kSide} * kSide, Rgb{7, 7, 7}));
   set_size(bomb, 10, 10);
   const auto image = image_from_bytes(bomb, "x.png");
-  if (image) {
-    EXPECT_EQ((*image)->pixels.size(), 400u);
-  }
+  ASSERT_TRUE(image) << image.error();
+  EXPECT_EQ((*image)->pixels.size(), 400u);
 }
 
 TEST(Image, RejectsJpegFilesWithTooManyScans) {

@@ -97,20 +97,19 @@ TEST(LuaFaults, ScenesAreNotAffected) {
 }
 
 // Faults of the installed LuaJIT without protection. Other releases, and processors other than x64, have other faults;
-// sanitizers report crashes themselves.
+// sanitizers report crashes themselves. A `crash` is an access to memory out of bounds: what lies there decides whether
+// it crashes, gives wrong values, or has no effect.
 TEST(LuaFaults, TheInstalledVersionHasTheFaultsOfItsColumn) {
   const std::optional<std::size_t> column = installed_column();
   if (kSanitized || !column) return;
   const auto table = table_rows();
   for (const auto& [name, text] : fault_texts()) {
+    const std::string& known = table.at(name).at(*column);
+    if (known == "crash") continue;
     const std::string expected = run_plainly(text, {false, 0});
-    std::string found = expected.starts_with("crashed") ? "crash" : "no";
-    for (const int hot_loop : {0, 1}) {
-      const std::string result = run_plainly(text, {true, hot_loop});
-      if (result == expected) continue;
-      found = result.starts_with("crashed") ? "crash" : found == "crash" ? "crash" : "wrong";
-    }
-    EXPECT_EQ(found, table.at(name).at(*column)) << name;
+    bool differs = expected.starts_with("crashed");
+    for (const int hot_loop : {0, 1}) differs |= run_plainly(text, {true, hot_loop}) != expected;
+    EXPECT_EQ(differs, known == "wrong") << name;
   }
 }
 

@@ -22,8 +22,7 @@ std::span<const ManualEntry> manual_files() {
       {"$XDG_CONFIG_HOME/limber/panel.json", "Settings of the panel; by default in ~/.config/limber."},
       {"$XDG_STATE_HOME/limber",
        "History of the console, values for --recover, and in models/ the scenes, presets and takes of models; by "
-       "default "
-       "~/.local/state/limber."},
+       "default ~/.local/state/limber."},
       {"$XDG_RUNTIME_DIR/limber-PID.sock",
        "Socket of a running program, for limber console and limber monitor. Without that folder it is in $TMPDIR or "
        "/tmp."},

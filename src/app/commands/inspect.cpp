@@ -229,10 +229,6 @@ void add_overlaps(const model::BodyModel& model, std::string& out) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // plays the model until its first image
 int render_model(const InspectCommand& command, const std::string& file) {
   PlayOptions play;

@@ -350,10 +350,7 @@ int play_file(const PlayOptions& options, const osc::OscOptions& osc, const Quer
                                         : PlayedFile{options.scene, std::nullopt};
   const std::string scene = played ? played->scene : std::string();
   // absolute, because the current folder may be replaced while the show plays
-  std::error_code error;
-  const std::filesystem::path scene_path = std::filesystem::absolute(scene, error);
-  Result<engine::EngineOptions> engine_options =
-      parse_engine(options, error || scene.empty() ? scene : scene_path.string());
+  Result<engine::EngineOptions> engine_options = parse_engine(options, absolute_path(scene));
   if (!engine_options) return fail(kUsageError, engine_options.error());
   if (!played) return fail(kInputError, played.error());
   if (!options.save_scene.empty()) return save_scene(options, played->model);

@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "app/paths.h"
 #include "app/viewer/model_file.h"
 #include "base/log/log.h"
 #include "base/system/thread.h"
@@ -29,11 +30,7 @@ constexpr std::chrono::milliseconds kReloadRetryInterval{250};  // interval of r
 // address of requests to add a model; not a valid OSC address, so that only this program makes them
 constexpr std::string_view kAddModel = "add model";
 
-std::string folder_of(const std::string& scene) {
-  std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::absolute(scene, error);
-  return (error ? std::filesystem::path(scene) : absolute).parent_path();
-}
+std::string folder_of(const std::string& scene) { return std::filesystem::path(absolute_path(scene)).parent_path(); }
 
 }  // namespace
 
@@ -93,9 +90,7 @@ bool SceneLoader::handle_model(const SceneRequest& request) {
   };
   Result<std::string> file = find_model(path);
   if (!file) return fail(file.error());
-  std::error_code error;
-  if (const std::filesystem::path absolute = std::filesystem::absolute(*file, error); !error)
-    *file = absolute.lexically_normal().string();
+  *file = absolute_path(*file);
   model::ImportOptions options;
   if (models_ != nullptr) options.package_paths = models_->package_paths();
   const auto model = model::import_model(*file, options);

@@ -27,10 +27,8 @@ constexpr std::size_t kMaxListed = 8;       // models in an error
 constexpr std::size_t kHeadBytes = 1u << 16;
 constexpr const char* kKinds = "a model is a .urdf or .xml (MJCF) file or a folder with one, a scene is a .lua file";
 
-std::string extension_of(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return extension;
+bool has_extension(const fs::path& path, std::string_view extension) {
+  return same_in_any_case(path.extension().string(), extension);
 }
 
 // the root element of an XML file, from its beginning
@@ -43,9 +41,8 @@ std::string root_of(const fs::path& path) {
 }
 
 bool is_model(const fs::path& path) {
-  const std::string extension = extension_of(path);
-  if (extension == ".urdf") return true;
-  if (extension != ".xml" && extension != ".mjcf") return false;
+  if (has_extension(path, ".urdf")) return true;
+  if (!has_extension(path, ".xml") && !has_extension(path, ".mjcf")) return false;
   const std::string root = root_of(path);
   return root == "mujoco" || root == "robot";
 }
@@ -100,15 +97,14 @@ Result<std::string> model_in_folder(const std::string& folder) {
 }  // namespace
 
 bool has_model_name(const std::string& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".urdf" || extension == ".xml" || extension == ".mjcf";
+  return has_extension(path, ".urdf") || has_extension(path, ".xml") || has_extension(path, ".mjcf");
 }
 
 Result<std::string> find_model(const std::string& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return model_in_folder(path);
   if (has_model_name(path)) return path;
-  if (extension_of(path) == ".xacro")
+  if (has_extension(path, ".xacro"))
     return Error{fmt::format("'{}' is a xacro macro, which becomes a URDF with: xacro {} > robot.urdf", printable(path),
                              printable(fs::path(path).filename().string()))};
   return Error{fmt::format("'{}' is not a model; {}", printable(path), kKinds)};

@@ -90,9 +90,8 @@ std::string floor_lines(const model::BodyModel& body, const sim::Bounds& bounds)
          floor("friction = 1");
 }
 
-bool has_servo(const model::JointModel& joint, bool all) {
-  return joint.mimic < 0 && joint.type != model::JointType::fixed && joint.type != model::JointType::floating &&
-         joint.type != model::JointType::planar && joint.type != model::JointType::spherical && (all || joint.driven);
+bool has_target_number(const model::JointModel& joint, bool all) {
+  return joint.takes_servo() && joint.type != model::JointType::spherical && (all || joint.driven);
 }
 
 // the motors with the ranges of their joints, as comments
@@ -101,7 +100,7 @@ std::string motor_lines(const model::BodyModel& body) {
   std::string lines;
   const model::JointModel* first = nullptr;
   for (const model::JointModel& joint : body.joints) {
-    if (!has_servo(joint, all)) continue;
+    if (!has_target_number(joint, all)) continue;
     if (first == nullptr) first = &joint;
     const std::string range = joint.limited ? fmt::format("{:.4g} .. {:.4g}", joint.lower, joint.upper) : "no limits,";
     lines += fmt::format("-- robot:motor({}).target = {:.4g} -- {} {}\n", lua_string(joint.name), joint.start, range,
@@ -203,9 +202,7 @@ std::string model_path_in_scene(const std::string& model, const std::string& sce
 }
 
 Result<void> save_model_scene(const ModelScene& scene, const std::string& file, bool overwrite) {
-  std::error_code error;
-  const std::string target = fs::absolute(file, error).lexically_normal().string();
-  if (error) return Error{fmt::format("{}: {}", printable(file), error.message())};
+  const std::string target = absolute_path(file);
   const auto body = import(scene);
   if (!body) return Error{body.error()};
   ModelScene saved = scene;

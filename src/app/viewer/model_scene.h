@@ -18,7 +18,7 @@ struct ModelScene {
   std::vector<engine::AddedModel> added;   ///< Models that the user has added.
 };
 
-/// Returns the text of the scene that plays the model. `scene`: file name for the instruction in its first lines;
+/// Returns the text of the scene that plays the model. `scene_name`: its file name, for its first lines;
 /// `path`: the path of the model to write; `body`: the imported model. [any]
 std::string model_scene_text(const ModelScene& scene, const std::string& scene_name, const std::string& path,
                              const model::BodyModel& body);

@@ -15,12 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string absolute_path(const std::string& path) {
-  std::error_code error;
-  const fs::path absolute = fs::absolute(path, error);
-  return error ? path : absolute.lexically_normal().string();
-}
-
 // scripts without an extension are accepted, too
 bool has_scene_name(const std::string& path) {
   const std::string extension = fs::path(path).extension().string();

@@ -86,12 +86,9 @@ std::string free_name(const std::string& wanted, const std::vector<std::string>&
 }  // namespace
 
 bool needs_servos(const model::BodyModel& model) {
-  const auto takes_servo = [](const model::JointModel& joint) {
-    return joint.mimic < 0 && joint.type != model::JointType::fixed && joint.type != model::JointType::floating &&
-           joint.type != model::JointType::planar;
-  };
-  const auto is_driven = [&](const model::JointModel& joint) { return takes_servo(joint) && joint.driven; };
-  return std::ranges::any_of(model.joints, takes_servo) && std::ranges::none_of(model.joints, is_driven);
+  const auto is_driven = [](const model::JointModel& joint) { return joint.takes_servo() && joint.driven; };
+  return std::ranges::any_of(model.joints, &model::JointModel::takes_servo) &&
+         std::ranges::none_of(model.joints, is_driven);
 }
 
 AddedModel place_model(const sim::World& world, const std::string& path, const model::BodyModel& model,

@@ -75,11 +75,6 @@ std::string percent_decoded(std::string_view text) {
   return out;
 }
 
-bool same_in_any_case(std::string_view a, std::string_view b) {
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](char c, char d) { return lower(c) == lower(d); });
-}
-
 std::string find_in_any_case(const std::string& folder, std::string_view name) {
   std::string found;
   std::error_code fault;

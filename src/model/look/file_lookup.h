@@ -57,8 +57,6 @@ class FileLookup final : public LookFiles {
 
 /// Replaces %20 and other escapes of a URI by the bytes that they stand for; leaves invalid escapes. [any]
 std::string percent_decoded(std::string_view text);
-/// Compares two names or paths without regard to the case of ASCII letters. [any]
-bool same_in_any_case(std::string_view a, std::string_view b);
 /// A file of this folder whose name differs from `name` in the case of ASCII letters only; empty: none. [any]
 std::string find_in_any_case(const std::string& folder, std::string_view name);
 

@@ -118,19 +118,13 @@ Result<void> decode_jpeg(std::string_view bytes, Image& image) {
   return {};
 }
 
-bool ends_with_ignoring_case(std::string_view text, std::string_view end) {
-  if (text.size() < end.size()) return false;
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
-  return std::equal(end.begin(), end.end(), text.end() - static_cast<std::ptrdiff_t>(end.size()),
-                    [&](char a, char b) { return a == lower(b); });
-}
-
 }  // namespace
 
 bool is_image_name(std::string_view path) {
   constexpr std::array<std::string_view, 3> kEnds{".png", ".jpg", ".jpeg"};
-  return std::any_of(kEnds.begin(), kEnds.end(),
-                     [&](std::string_view end) { return ends_with_ignoring_case(path, end); });
+  return std::any_of(kEnds.begin(), kEnds.end(), [&](std::string_view end) {
+    return path.size() >= end.size() && same_in_any_case(path.substr(path.size() - end.size()), end);
+  });
 }
 
 Result<std::shared_ptr<const Image>> image_from_bytes(std::string_view bytes, std::string file) {

@@ -39,11 +39,8 @@ std::shared_ptr<const Image> SoupLook::load(const std::string& name) {
   if (!is_new || files_ == nullptr || images_.size() > 2 * kMaxMeshTextures) return known->second;
   const Result<std::shared_ptr<const Image>> image = files_->image(name);
   if (!image) {
-    const std::string& text = image.error();
-    const std::size_t end = std::min(text.rfind(". "), text.size());
-    report(Severity::warning, "texture",
-           fmt::format("texture {}; its surfaces are drawn without it", text.substr(0, end)),
-           end == text.size() ? "Fix the image." : text.substr(end + 2));
+    const auto [text, fix] = split_fix(image.error(), "Fix the image.");
+    report(Severity::warning, "texture", fmt::format("texture {}; its surfaces are drawn without it", text), fix);
     return nullptr;
   }
   return known->second = within_limits(*image, name);

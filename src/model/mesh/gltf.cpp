@@ -232,11 +232,9 @@ class Reader {
     Result<std::shared_ptr<const Image>> read =
         bytes ? image_from_bytes(*bytes, name) : Result<std::shared_ptr<const Image>>(Error{bytes.error()});
     if (read) return *read;
-    const std::string& fault = read.error();
-    const std::size_t end = std::min(fault.rfind(". "), fault.size());
+    const auto [text, fix] = split_fix(read.error(), "Fix the image.");
     look_->report(Severity::warning, "texture",
-                  fmt::format("texture '{}' {}; its surfaces are drawn without it", name, fault.substr(0, end)),
-                  end == fault.size() ? "Fix the image." : fault.substr(end + 2));
+                  fmt::format("texture '{}' {}; its surfaces are drawn without it", name, text), fix);
     return nullptr;
   }
 

@@ -166,11 +166,9 @@ class ObjReader {
     if (look_->files() == nullptr || material_files_++ >= kMaxMaterialFiles) return;
     const Result<std::string> file = look_->files()->read(name, ".mtl", kMaxMaterialFileBytes);
     if (file) return read_mtl(*file, *look_, materials_);
-    const std::string& text = file.error();
-    const std::size_t end = std::min(text.rfind(". "), text.size());
-    look_->report(Severity::warning, "material file",
-                  fmt::format("material file {}; drawn without its colors", text.substr(0, end)),
-                  end == text.size() ? "Fix the file." : text.substr(end + 2));
+    const auto [text, fix] = split_fix(file.error(), "Fix the file.");
+    look_->report(Severity::warning, "material file", fmt::format("material file {}; drawn without its colors", text),
+                  fix);
     lacks_materials_ = true;
   }
 

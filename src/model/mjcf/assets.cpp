@@ -158,11 +158,10 @@ void MjcfFileReader::read_texture(const MjcfElement& element) {
   if (file == nullptr) {
     reader_.unsupported(element,
                         sky ? "<texture type='skybox'> ignored: the scene sets the background"
-                            : "<texture> without a file ignored: shapes have plain colors",
+                            : "<texture> without a file ignored: its shapes have plain colors",
                         "Write rgba for the material.");
     return;
   }
-  reader_.unsupported(element, "<texture> ignored: shapes have plain colors", "Write rgba for the material.");
   std::string name = reader_.name(element);
   if (name.empty()) name = std::filesystem::path(*file).stem().string();
   textures_.try_emplace(name, asset_path(reader_.compiler, reader_.compiler.texture_folder, *file));

@@ -66,7 +66,7 @@ void convert_loops(const MjcfFile& file, const std::vector<int>& link_of, std::s
   problems.warning(first_other->line,
                    fmt::format("{} to a body that is not part of this tree: {} open",
                                counted(others, "<connect> or <weld> leads", "<connect> or <weld> lead"),
-                               others == 1 ? "the loop stays" : "the loops stay"),
+                               plural(others, "the loop stays", "the loops stay")),
                    "Load with root = \"world\", so that all bodies are one body.");
 }
 

@@ -55,7 +55,7 @@ class MjcfReader {
   /// Counts an effect that is not supported; report_deferred() reports each once, with the number of places.
   void unsupported(const MjcfElement& element, const std::string& text, const std::string& fix,
                    Severity severity = Severity::note);
-  /// Reports an element with an unknown name, with a suggestion among `known`. `text`: what it is not, or its effect.
+  /// Reports an element with an unknown name, and the known name that is most similar. `text`: what happens with it.
   void unknown(const MjcfElement& element, const std::string& text, std::span<const std::string_view> known,
                const std::string& fix, Severity severity = Severity::warning);
   /// True if unsupported() has this text already, which is then counted, or can't add another one: then its fix needs

@@ -15,17 +15,6 @@
 
 namespace limber::model {
 
-namespace {
-
-// the last sentence of an error is its fix
-std::pair<std::string, std::string> text_and_fix(const std::string& error, const char* default_fix) {
-  const std::size_t end = error.rfind(". ");
-  if (end == std::string::npos) return {error, default_fix};
-  return {error.substr(0, end), error.substr(end + 2)};
-}
-
-}  // namespace
-
 MeshLoader::MeshLoader(const std::string& path, const ImportOptions& options, MeshLibrary& meshes, Problems& problems)
     : folder_(std::filesystem::path(path).parent_path().string()),
       options_(options),
@@ -91,7 +80,7 @@ void MeshLoader::load_texture(UrdfShape& shape, const std::string& owner) {
                       "Export the mesh with texture coordinates.");
     return;
   }
-  const auto [text, fix] = text_and_fix(image.error(), "Fix the image.");
+  const auto [text, fix] = split_fix(image.error(), "Fix the image.");
   problems_.warning(shape.line, fmt::format("{}: texture ignored: {}; drawn in {}", owner, text, effect), fix);
 }
 
@@ -106,7 +95,7 @@ Result<std::shared_ptr<const Image>> MeshLoader::read_image(const std::string& u
   return image;
 }
 
-// what the mesh file has, but isn't drawn; once per file
+// Reports the colors and textures of a mesh file that are not drawn, once per file.
 void MeshLoader::report_look(const UrdfShape& shape, const MeshModel& mesh) {
   if (mesh.look == nullptr) return;
   if (has_colors(mesh) && !shape.material.keeps_mesh_colors() && shape.material.texture_uri.empty() &&
@@ -131,7 +120,7 @@ bool MeshLoader::load_mesh(UrdfShape& shape, const std::string& owner) {
   if (shape.shape.kind != ShapeKind::mesh || shape.shape.mesh != nullptr) return true;
   const MeshResult& mesh = get(shape.mesh_uri, shape.mesh_scale);
   if (!mesh) {
-    const auto [text, fix] = text_and_fix(mesh.error(), "Fix the mesh file.");
+    const auto [text, fix] = split_fix(mesh.error(), "Fix the mesh file.");
     problems_.error(shape.line, fmt::format("{} mesh ignored: {}", owner, text), fix);
     return false;
   }

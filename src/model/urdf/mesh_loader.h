@@ -25,7 +25,7 @@ class MeshLoader {
   /// Loads the meshes used by the tree's links; removes and reports shapes with a mesh that can't be loaded.
   void run(UrdfFile& file, const std::vector<UrdfNode>& tree);
   /// Loads the mesh and the texture of a shape, if it has them; reports a mesh that can't be loaded as one of `owner`,
-  /// and returns false. If the shape is `drawn`, reports what is not drawn of its mesh and texture, once per file.
+  /// and returns false. If the shape is `drawn`, reports colors and textures that are not drawn, once per file.
   bool load(UrdfShape& shape, const std::string& owner, bool drawn = true);
   /// Appends the mesh files, with their hashes and URIs, to the model's lists.
   void list_files(BodyModel& model) const;

@@ -44,8 +44,10 @@ std::optional<UrdfLoop> UrdfReader::loop(const Element& element) {
   UrdfLoop out;
   out.line = element.GetLineNum();
   const char* const name = element.Attribute("name");
-  if (name && !name_error(name)) out.name = name;
-  const std::string owner = fmt::format("loop '{}'", printable(out.name));
+  const std::optional<std::string> fault = name ? name_error(name) : std::nullopt;
+  if (name && !fault) out.name = name;
+  const std::string owner = out.name.empty() ? std::string("a loop") : fmt::format("loop '{}'", printable(out.name));
+  if (fault) problems.warning(out.line, fmt::format("{}: name ignored: {}", owner, *fault), kExample);
   check_attributes(element, {"name", "type"});
   if (!loop_sides(element, owner, out)) return std::nullopt;
   if (!element.Attribute("type")) {

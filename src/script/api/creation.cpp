@@ -84,7 +84,7 @@ Error not_loaded(std::string_view file) {
                   file)};
 }
 
-// what the file has, but isn't drawn
+// Reports the colors and textures of a mesh file that are not drawn.
 void report_look(const std::string& path, const model::MeshModel& mesh) {
   if (mesh.look == nullptr) return;
   for (const model::Problem& problem : mesh.look->problems) {

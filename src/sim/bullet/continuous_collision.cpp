@@ -15,10 +15,6 @@ constexpr btScalar kFastShare = 0.9F;
 constexpr int kMaxRounds = 6;
 constexpr btScalar kMinChange = 1e-4F;
 
-bool overlap(const btVector3& low_a, const btVector3& high_a, const btVector3& low_b, const btVector3& high_b) {
-  return TestAabbAgainstAabb2(low_a, high_a, low_b, high_b);
-}
-
 }  // namespace
 
 bool ContinuousCollision::is_fast(const btRigidBody& body, btScalar h) {
@@ -99,7 +95,7 @@ void ContinuousCollision::find_pairs(collision::Broadphase& broadphase, btDispat
   // the boxes in the trees don't include the motion of other fast bodies
   for (std::size_t i = 0; i < movers_.size(); ++i) {
     for (std::size_t k = i + 1; k < movers_.size() && movers_[k].low.x() <= movers_[i].high.x(); ++k) {
-      if (overlap(movers_[i].low, movers_[i].high, movers_[k].low, movers_[k].high) &&
+      if (TestAabbAgainstAabb2(movers_[i].low, movers_[i].high, movers_[k].low, movers_[k].high) &&
           collision::Broadphase::may_collide(*movers_[i].body, *movers_[k].body))
         add_pair(static_cast<int>(i), *movers_[k].body);
     }

@@ -7,11 +7,6 @@ namespace {
 /// Rotation per step, rad, up to which the second-order correction applies.
 constexpr btScalar kMaxCorrectedRotation = btScalar(0.8);
 
-bool moves(const btSolverBody& body) {
-  const btVector3 zero(0, 0, 0);
-  return body.m_originalBody == nullptr && (body.m_linearVelocity != zero || body.m_angularVelocity != zero);
-}
-
 // Velocity of a moving static body's surface. A part that is carried moves straight within a step while the surface
 // below it turns: w x arm alone would let it drift outwards by r·w²·h/2 per second. The mean velocity of the surface
 // at the other body, which moves at u relative to this one, is larger by w x u·h/2; the term of second order corrects
@@ -35,16 +30,17 @@ btVector3 belt_velocity(const btCollisionObject& object) {
 
 bool has_surface_motion(const btCollisionObject& a, const btSolverBody& body_a, const btCollisionObject& b,
                         const btSolverBody& body_b) {
-  return surface_velocity(a) != nullptr || surface_velocity(b) != nullptr || moves(body_a) || moves(body_b);
+  return surface_velocity(a) != nullptr || surface_velocity(b) != nullptr || is_moving_static(body_a) ||
+         is_moving_static(body_b);
 }
 
 SurfaceMotion surface_motion(const ContactSide& a, const ContactSide& b, btScalar h) {
   SurfaceMotion motion;
-  if (moves(a.body)) {
+  if (is_moving_static(a.body)) {
     motion.body += velocity_of(a, b.body, h);
     motion.spin += a.body.m_angularVelocity;
   }
-  if (moves(b.body)) {
+  if (is_moving_static(b.body)) {
     motion.body -= velocity_of(b, a.body, h);
     motion.spin -= b.body.m_angularVelocity;
   }

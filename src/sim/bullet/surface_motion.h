@@ -13,6 +13,12 @@ inline bool is_moving_static(const btCollisionObject& object) {
   return body != nullptr && (body->getLinearVelocity() != zero || body->getAngularVelocity() != zero);
 }
 
+/// True for the solver body of a static object that moves.
+inline bool is_moving_static(const btSolverBody& body) {
+  const btVector3 zero(0, 0, 0);
+  return body.m_originalBody == nullptr && (body.m_linearVelocity != zero || body.m_angularVelocity != zero);
+}
+
 /// Velocity at which the surface of an object moves along the object itself, like a belt, in the object's frame.
 struct SurfaceVelocity {
   BT_DECLARE_ALIGNED_ALLOCATOR();

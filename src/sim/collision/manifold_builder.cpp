@@ -6,8 +6,6 @@
 
 #include "sim/bullet/surface_motion.h"
 
-#include "sim/bullet/surface_motion.h"
-
 namespace limber::sim::collision {
 namespace {
 
@@ -71,16 +69,17 @@ ManifoldBuilder::ManifoldBuilder(btPersistentManifold& manifold, btScalar h)
       h_(h),
       contact_distance_(std::min(kContactDistance, manifold.getContactBreakingThreshold())),
       max_rotation_distance_(contact_distance_),
-      max_distance_(contact_distance_),
-      speculative_(manifold.getContactProcessingThreshold() > 0) {
+      max_distance_(contact_distance_) {
   btVector3 motion(0, 0, 0);
   if (a_ != nullptr) motion -= a_->getLinearVelocity() * h_;
   if (b_ != nullptr) motion += b_->getLinearVelocity() * h_;
-  if (must_predict(a_, b_, motion)) {
-    speculative_ = true;
-    manifold_.setContactProcessingThreshold(BT_LARGE_FLOAT);
-  }
-  if (!speculative_) return;
+  // 0: contacts begin when the surfaces touch; see Part::apply_surface
+  const btScalar threshold = must_predict(a_, b_, motion)
+                                 ? btScalar(BT_LARGE_FLOAT)
+                                 : std::min(manifold.getBody0()->getContactProcessingThreshold(),
+                                            manifold.getBody1()->getContactProcessingThreshold());
+  manifold_.setContactProcessingThreshold(threshold);
+  if (threshold <= 0) return;
   relative_motion_ = motion;
   max_rotation_distance_ +=
       ((a_ != nullptr ? rotation_speed(*a_) : 0) + (b_ != nullptr ? rotation_speed(*b_) : 0)) * h_;

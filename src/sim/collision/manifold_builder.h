@@ -55,7 +55,6 @@ class ManifoldBuilder {
   btVector3 relative_motion_{0, 0, 0};
   btScalar max_rotation_distance_;
   btScalar max_distance_;
-  bool speculative_;  // contacts may begin before the surfaces touch; see Part::apply_surface
   int count_ = 0;
   std::array<Point, kMaxCandidates> points_;
 };

@@ -198,7 +198,6 @@ void Solid::add_hull(const model::MeshModel& mesh) {
 
 std::optional<SolidHit> Solid::intersect(const Vec3& from, const Vec3& direction, double max) const {
   if (kind_ == model::ShapeKind::mesh) return intersect_hull(from, direction, max);
-  if (signed_distance(from) < 0) return {};
   FirstEntry entry(from, direction, max);
   switch (kind_) {
     case model::ShapeKind::plane:

@@ -56,18 +56,18 @@ class Zone final : public Sensor {
   void report_changes(Sensing& sensing) {
     before_.swap(inside_);
     inside_.clear();
-    for (const NearPart& near : found_) {
-      inside_.push_back(near.part->id());
-      if (std::ranges::find(before_, near.part->id()) == before_.end())
-        sensing.add_zone_event(true, id(), near.part->id());
+    for (const NearPart& near : found_) inside_.push_back(near.part->id());
+    std::ranges::sort(inside_);
+    for (const NodeId part : inside_) {
+      if (!std::ranges::binary_search(before_, part)) sensing.add_zone_event(true, id(), part);
     }
     for (const NodeId part : before_) {
-      if (std::ranges::find(inside_, part) == inside_.end()) sensing.add_zone_event(false, id(), part);
+      if (!std::ranges::binary_search(inside_, part)) sensing.add_zone_event(false, id(), part);
     }
   }
 
   NodeId nearest_;
-  std::vector<NodeId> inside_;  // after the last tick
+  std::vector<NodeId> inside_;  // after the last tick, sorted
   std::vector<NodeId> before_;
   std::vector<NearPart> found_;
 };

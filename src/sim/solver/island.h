@@ -5,6 +5,7 @@
 #include "sim/bullet/joints/gear_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/bullet/rotation_step.h"
+#include "sim/bullet/surface_motion.h"
 #include "sim/solver/direct_solver.h"
 #include "sim/solver/forest/axis_active_set.h"
 #include "sim/solver/forest/spatial_algebra.h"
@@ -40,10 +41,8 @@ struct Island {
   bool is_dynamic(int i) const { return body(i).m_invMass.x() > 0; }
   /// True if a static body of a joint or contact moves.
   bool has_moving_static() const {
-    const btVector3 zero(0, 0, 0);
     for (int i = 0; i < pools->bodies.size(); ++i) {
-      const btSolverBody& b = body(i);
-      if (b.m_originalBody == nullptr && (b.m_linearVelocity != zero || b.m_angularVelocity != zero)) return true;
+      if (bullet::is_moving_static(body(i))) return true;
     }
     return false;
   }

@@ -27,10 +27,7 @@ void set_up_motor(Motor& motor, const model::JointModel& m, std::optional<bool> 
   store.mutable_values(motor.id(), Motor::table().at(linear ? "max_linear_force" : "max_angular_force"))[2] = m.effort;
   store.mutable_values(motor.id(), Motor::table().at(linear ? "linear_velocity" : "angular_velocity"))[2] = m.velocity;
   store.mutable_values(motor.id(), Motor::table().at("damping"))[0] = m.damping;
-  // planar and floating joints have several axes, and mimic joints follow their leader: none gets a servo by default
-  const bool use_servo = servo.value_or(m.driven) && m.type != model::JointType::floating &&
-                         m.type != model::JointType::planar && !joint.spec().mimic;
-  if (!use_servo) motor.set_mode(MotorMode::off);
+  if (!m.takes_servo() || !servo.value_or(m.driven)) motor.set_mode(MotorMode::off);
   if (m.spring.stiffness <= 0 || (servo && !m.driven)) return;
   const std::string side = linear ? "linear" : "angular";
   store.mutable_values(motor.id(), Motor::table().at(side + "_spring_stiffness"))[2] = m.spring.stiffness;

@@ -112,7 +112,7 @@ class Renderer {
   std::map<std::pair<MeshKey, int>, GpuMesh> meshes_;
   std::map<const model::Image*, GlTexture> textures_;
   GlTexture white_;  // for colored meshes without a texture
-  // state of a color pass: the programs for plain and colored meshes, and what is bound
+  // of the color pass that is being drawn: programs for plain and colored meshes, and the bound program and texture
   std::array<std::uint32_t, 2> shape_programs_{};
   bool colored_bound_ = false;
   std::uint32_t bound_texture_ = 0;
