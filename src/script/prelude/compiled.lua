@@ -128,11 +128,12 @@ end
 
 -- On Debian 12, loop optimization confuses constant tables that a variable holds in turn, and lengths of a table with
 -- two names. Scripts that store such tables, or use lengths and set elements, are compiled without it.
-local loops_optimized, has_length, has_element = true, false, false
-local function forbid_loop_optimization()
-  if not loops_optimized then return end
-  loops_optimized = false
-  jit.opt.start("-loop")
+local has_length, has_element = false, false
+local forbidden = {}
+local function forbid(optimization)
+  if forbidden[optimization] then return end
+  forbidden[optimization] = true
+  jit.opt.start("-" .. optimization)
   jit.flush()
 end
 
@@ -145,6 +146,8 @@ local function inspect(proto, is_chunk)
   constants(proto, function(constant)
     if type(constant) == "proto" then return inspect(constant) end
     interpret_group(constant)
+    -- sums below a bit operation would be computed with 32 bits, which differs beyond 2^51
+    if constant == "bit" then forbid("narrow") end
     if constant == "table" then uses_tables = true end
   end)
   if not is_chunk then P.watch(proto) end
@@ -157,7 +160,7 @@ local function inspect(proto, is_chunk)
     return
   end
   has_length, has_element = has_length or found.length or uses_tables, has_element or found.element or uses_tables
-  if found.constant_stored or (has_length and has_element) then forbid_loop_optimization() end
+  if found.constant_stored or (has_length and has_element) then forbid("loop") end
 end
 
 local load = P.load
