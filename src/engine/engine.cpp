@@ -12,7 +12,13 @@ namespace limber::engine {
 
 Engine::Engine(EngineLink& link, EngineOptions options) : show_(link, std::move(options)) {
   show_.input = &live_input_;
-  link.wake_engine = [this] { show_.pacer.notify_commands(); };
+  link.wake_engine = [this] {
+    if (show_.options.lockstep) {
+      show_.pacer.wake();
+    } else {
+      show_.pacer.notify_commands();
+    }
+  };
 }
 
 Engine::~Engine() {
@@ -47,7 +53,7 @@ void Engine::run() {
   SimThreadExecutor& requests = scenes_.requests();
   Pacer& pacer = show_.pacer;
   requests.open();
-  pacer.start();
+  pacer.start(show_.options.lockstep);
   while (!pacer.stopped() && !finished()) {
     show_.options.on_iteration();
     if (!show_.input->is_paced()) {
@@ -57,7 +63,7 @@ void Engine::run() {
       pacer.begin_tick(*show_.session);
       run_pass(true);
     } else if (pacer.consume_commands() || show_.link.panic_signal.load() || !show_.handler_queue.empty()) {
-      run_pass(false);
+      run_pass(show_.options.lockstep);
     }
   }
   requests.close();

@@ -19,6 +19,8 @@ struct EngineOptions {
   std::string scene;                   ///< Scene file; empty: an empty world.
   script::SceneOptions scene_options;  ///< Seed, package paths, installed data.
   bool fast = false;                   ///< Computes ticks without waiting for real time. The result is the same.
+  /// Time advances only by /transport/step, without waiting for real time; messages behind a step wait for its ticks.
+  bool lockstep = false;
   std::optional<std::uint64_t> ticks;  ///< Ends after this number of ticks; else runs until stop().
   std::optional<double> duration;      ///< Ends at this simulated time, s.
   bool strict = false;                 ///< Ends at the first fault.
@@ -39,6 +41,9 @@ struct EngineOptions {
   std::function<void()> on_iteration = [] {};
   /// Real time in seconds, for time budgets and for the first second of a panic. Tests replace it.
   std::function<double()> clock = system::clock_seconds;
+
+  /// True if ticks wait for real time, and work that lasts too long is left for the next one.
+  bool in_real_time() const { return !fast && !lockstep; }
 };
 
 }  // namespace limber::engine

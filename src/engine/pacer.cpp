@@ -18,7 +18,9 @@ bool Pacer::wait_for_tick(const SimThreadExecutor& requests) {
   const auto next_tick = clock_.next_tick();
   const auto until = std::min(next_tick, Clock::Time::clock::now() + kMaxWait);
   std::unique_lock lock(wake_mutex_);
-  const bool requested = wake_.wait_until(lock, until, [&] { return stopped() || requests.waiting(); });
+  const bool requested = wake_.wait_until(lock, until, [&] {
+    return stopped() || requests.waiting() || (wakes_for_commands_ && commands_waiting_.load());
+  });
   return until == next_tick && !requested;
 }
 

@@ -13,8 +13,11 @@ namespace limber::engine {
 
 class Pacer {
  public:
-  /// Starts the schedule: the first tick is due now. [sim]
-  void start() { clock_.restart(Clock::Time::clock::now()); }
+  /// Starts the schedule: the first tick is due now. `wakes_for_commands`: wait_for_tick() ends when one arrives. [sim]
+  void start(bool wakes_for_commands) {
+    clock_.restart(Clock::Time::clock::now());
+    wakes_for_commands_ = wakes_for_commands;
+  }
   /// Waits until the next tick is due. False if it is not due yet, but requests or commands may wait for a pass. [sim]
   bool wait_for_tick(const SimThreadExecutor& requests);
   /// Starts a tick that was waited for, and reports a machine that can't keep up. [sim]
@@ -44,6 +47,7 @@ class Pacer {
  private:
   void count_stall(bool paused);
 
+  bool wakes_for_commands_ = false;
   Clock clock_;
   double lost_time_ = 0;         // s
   bool stall_reported_ = false;  // the stall warning was logged

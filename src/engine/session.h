@@ -20,9 +20,10 @@
 namespace limber::engine {
 
 struct Session {
-  Session(EngineLink& link, Presets& presets, UndoStack& undo_stack, const sim::WorldSetup& setup)
+  Session(EngineLink& link, Presets& presets, UndoStack& undo_stack, const sim::WorldSetup& setup,
+          bool lockstep = false)
       : world(store, setup),
-        transport(world, link.health),
+        transport(world, link.health, lockstep),
         counters(store, link.counters),
         preset_node(world, presets),
         edit_node(world, undo_stack),

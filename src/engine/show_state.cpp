@@ -14,7 +14,7 @@ ShowState::ShowState(EngineLink& engine_link, EngineOptions engine_options)
 std::unique_ptr<Session> ShowState::new_session() {
   sim::WorldSetup setup;
   setup.thread_pool = thread_pool;
-  auto fresh = std::make_unique<Session>(link, presets, undo_stack, setup);
+  auto fresh = std::make_unique<Session>(link, presets, undo_stack, setup, options.lockstep);
   fresh->world.kinematics().set_static_parts_move(!rules.before_second_revision);
   return fresh;
 }

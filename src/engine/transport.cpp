@@ -43,10 +43,16 @@ const PropertyTable& Transport::table() {
   return table;
 }
 
-Transport::Transport(sim::World& world, const Health& health)
-    : world_(world), health_(health), id_(world.store().add(table(), world.store().root(), "transport", this)) {}
+Transport::Transport(sim::World& world, const Health& health, bool lockstep)
+    : world_(world),
+      health_(health),
+      lockstep_(lockstep),
+      id_(world.store().add(table(), world.store().root(), "transport", this)) {}
 
-bool Transport::paused() const { return world_.store().values(world_.id(), sim::World::table().at("paused"))[0] != 0; }
+bool Transport::paused() const {
+  if (lockstep_) return true;
+  return world_.store().values(world_.id(), sim::World::table().at("paused"))[0] != 0;
+}
 
 void Transport::set_paused(bool paused) {
   const double value = paused ? 1 : 0;
@@ -74,6 +80,7 @@ std::string_view Transport::read_health() const {
 }
 
 Result<void> Transport::act_play(std::span<const double>) {
+  if (lockstep_) return Error{"with --lockstep, time advances only by /transport/step"};
   steps_ = 0;
   set_paused(false);
   return {};

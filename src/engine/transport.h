@@ -17,7 +17,8 @@ class Transport {
  public:
   static const PropertyTable& table();
 
-  Transport(sim::World& world, const Health& health);
+  /// `lockstep`: time advances only by `step`, so that it counts as paused.
+  Transport(sim::World& world, const Health& health, bool lockstep);
 
   bool paused() const;
   /// Consumes one of the ticks requested by `step`. False if none is left.
@@ -52,6 +53,7 @@ class Transport {
 
   sim::World& world_;
   const Health& health_;
+  bool lockstep_;
   NodeId id_;
   int steps_ = 0;
   std::optional<RewindRequest> rewind_;

@@ -170,14 +170,14 @@ osc:on("/ask", function() osc:reply("/told", sim.tick) end)
 
   show.send("/transport/step");
   show.ticks(3);
-  EXPECT_EQ(show.sent_texts(), (Lines{"/step 2"}));
+  EXPECT_EQ(show.sent_texts(), (Lines{"/step 2", "/transport/stepped 3"}));
   show.send("/transport/step", 2);
   show.ticks(4);
-  EXPECT_EQ(show.sent_texts(), (Lines{"/step 3", "/step 4"}));
+  EXPECT_EQ(show.sent_texts(), (Lines{"/step 3", "/step 4", "/transport/stepped 5"}));
   show.send("/transport/step", 3);
   show.send("/transport/pause");
   show.ticks(4);
-  EXPECT_EQ(show.sent_texts(), (Lines{})) << "pausing cancels pending steps";
+  EXPECT_EQ(show.sent_texts(), (Lines{"/transport/stepped 5"})) << "pausing cancels pending steps";
   show.send("/transport/play");
   show.ticks(1);
   EXPECT_EQ(show.sent_texts(), (Lines{"/step 5", "/transport/state 0 6 0.6000000000000001 1"}));

@@ -353,14 +353,16 @@ TEST(StepAndGet, AQueryAfterAStepIsAnsweredAfterItsTicks) {
   show.send("/get", "/physics/sim/tick");
   send_from(show, 4001, message("/get", "/physics/sim/tick"));
   show.ticks(6);
-  EXPECT_EQ(show.sent_texts(), (std::vector<std::string>{"/physics/sim/tick 0", "/physics/sim/tick 3"}))
+  EXPECT_EQ(show.sent_texts(),
+            (std::vector<std::string>{"/physics/sim/tick 0", "/transport/stepped 3", "/physics/sim/tick 3"}))
       << "another sender's is answered at once";
   show.send("/transport/step", 100);
   show.send("/get", "/physics/sim/tick");
   show.ticks(10);
   show.send("/transport/pause");
   show.ticks(1);
-  EXPECT_EQ(show.sent_texts(), std::vector<std::string>{"/physics/sim/tick 13"}) << "no step is left";
+  EXPECT_EQ(show.sent_texts(), (std::vector<std::string>{"/physics/sim/tick 13", "/transport/stepped 13"}))
+      << "no step is left";
 }
 
 }  // namespace

@@ -105,6 +105,10 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   add_display_options(*play, o.display);
   CLI::Option* fast =
       play->add_flag("--fast", o.fast, "Run at full speed instead of real time; no OSC and OSCQuery unless requested.");
+  CLI::Option* lockstep =
+      play->add_flag("--lockstep", o.lockstep,
+                     "Advance only by /transport/step, as fast as it is sent; each is answered by /transport/stepped.")
+          ->excludes(fast);
   play->add_option("--duration,--seconds", o.duration, "End at this simulated time.")
       ->type_name("S")
       ->check(positive_time());
@@ -133,10 +137,11 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
                    "With an MJCF model: the top-level body to play, or world; default: the first that moves.")
       ->type_name("BODY");
   CLI::Option* save_scene =
-      play->add_option("--save-scene", o.save_scene,
+      play->add_option("--save-scene", o.save_scene.file,
                        "Write the scene of the model to this file, with comments to start from, and exit.")
           ->type_name("FILE.lua");
-  play->add_flag("--overwrite", o.overwrite, "With --save-scene: replace an existing file.")->needs(save_scene);
+  play->add_flag("--overwrite", o.save_scene.overwrite, "With --save-scene: replace an existing file.")
+      ->needs(save_scene);
   play->add_flag("--watch", o.watch,
                  "With --fast: reload the scene when one of its files is saved, as is done in real time.");
   CLI::Option* record =
@@ -147,6 +152,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
       play->add_option("--replay", o.take.replay, "Replay this take with the scene and files recorded in it.")
           ->type_name("TAKE")
           ->excludes(record)
+          ->excludes(lockstep)
           ->excludes(scene)
           ->excludes(save_scene)
           ->excludes(seed)
@@ -156,6 +162,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
                  "Restore the values that the scene had when its last run crashed; the program reports at start if "
                  "there are any.")
       ->excludes(replay)
+      ->excludes(lockstep)
       ->excludes(fast);
   play->add_flag("--with-current-scripts", o.take.current_scripts,
                  "With --replay: use the current scene files; reports where the runs diverge.")

@@ -75,7 +75,7 @@ Result<void> write_unit(const std::string& file, std::string_view text) {
 std::string conflicting_option(const PlayOptions& play) {
   if (play.fast) return "--fast is for batch runs; a service plays in real time";
   if (play.display.offline()) return "--render and --screenshot are for batch runs; a service plays in real time";
-  if (!play.save_scene.empty()) return "--save-scene writes a scene and ends; a service plays";
+  if (!play.save_scene.file.empty()) return "--save-scene writes a scene and ends; a service plays";
   return {};
 }
 

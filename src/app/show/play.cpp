@@ -95,6 +95,7 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
   engine.scene_options.package_paths = options.package_paths;
   engine.scene_options.seed = options.seed;
   engine.fast = options.fast;
+  engine.lockstep = options.lockstep;
   engine.strict = options.strict;
   engine.threads = options.threads;
   engine.ticks = options.ticks;
@@ -103,10 +104,10 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
   engine.record = options.take.record;
   engine.replay = options.take.replay;
   engine.current_scripts = options.take.current_scripts;
-  // batch runs, replays and films save no recovery file
+  // batch runs, runs in lockstep, replays and films save no recovery file
   const std::string state = state_dir();
   if (!state.empty()) engine.lock_folder = state + "/locks";
-  if (!options.fast && options.take.replay.empty() && !options.display.offline() && !state.empty())
+  if (engine.in_real_time() && options.take.replay.empty() && !options.display.offline() && !state.empty())
     engine.recovery_folder = state + "/recovery";
   engine.recover = options.recover;
   for (const std::string& text : options.sets) {
@@ -329,10 +330,11 @@ Result<void> open_output(const PlayOptions& options) {
 // writes the scene of the model
 int save_scene(const PlayOptions& options, const std::optional<ModelScene>& model) {
   if (!model) return fail(kUsageError, "--save-scene writes the scene of a model; name a .urdf or .xml file");
-  if (const Result<void> saved = save_model_scene(*model, options.save_scene, options.overwrite); !saved)
+  if (const Result<void> saved = save_model_scene(*model, options.save_scene.file, options.save_scene.overwrite);
+      !saved)
     return fail(kInputError, saved.error());
-  print_notice("written: {}", printable(options.save_scene));
-  print_notice("{} {}", program_command(), shell_word(options.save_scene));
+  print_notice("written: {}", printable(options.save_scene.file));
+  print_notice("{} {}", program_command(), shell_word(options.save_scene.file));
   return kSuccess;
 }
 
@@ -353,7 +355,7 @@ int play_file(const PlayOptions& options, const osc::OscOptions& osc, const Quer
   Result<engine::EngineOptions> engine_options = parse_engine(options, absolute_path(scene));
   if (!engine_options) return fail(kUsageError, engine_options.error());
   if (!played) return fail(kInputError, played.error());
-  if (!options.save_scene.empty()) return save_scene(options, played->model);
+  if (!options.save_scene.file.empty()) return save_scene(options, played->model);
   if (options.display.offline()) return render_scene(options, std::move(*engine_options));
   return std::make_unique<Playing>(options, std::move(*engine_options), osc, query, played->model)->play();
 }

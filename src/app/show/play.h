@@ -36,10 +36,17 @@ struct TakeOptions {
   bool current_scripts = false;  ///< Replay with the current scripts instead of the recorded ones.
 };
 
+/// The scene to write for a model.
+struct SaveSceneOptions {
+  std::string file;        ///< Empty: play.
+  bool overwrite = false;  ///< Replace the file if it exists.
+};
+
 /// Options of `play`, as typed.
 struct PlayOptions {
   std::string scene = "scripts/arms.lua";
   bool fast = false;
+  bool lockstep = false;
   bool hash = false;
   bool strict = false;
   bool watch = false;  ///< Watch the scene's files under `fast` too.
@@ -50,10 +57,9 @@ struct PlayOptions {
   std::vector<std::string> sets;  ///< PATH=VALUE
   std::string preset;             ///< Recalled after the scene has run, before `sets`.
   std::vector<std::string> package_paths;
-  std::string root;        ///< MJCF: see ImportOptions.
-  std::string save_scene;  ///< File of the scene to write for a model; empty: play.
-  bool overwrite = false;  ///< Replace that file if it exists.
-  bool recover = false;    ///< Start with the values that a crashed run has left.
+  std::string root;  ///< MJCF: see ImportOptions.
+  SaveSceneOptions save_scene;
+  bool recover = false;  ///< Start with the values that a crashed run has left.
   NetworkOptions network;
   TakeOptions take;
   LogOptions log;

@@ -29,7 +29,8 @@ CommandExecutor::Execution CommandExecutor::execute(Message& message, const Comm
   if (outcome.kind == Outcome::Kind::take_request) outcome = source.request_take(message);
   report(outcome, message, origin);
   const bool has_handlers = session.scene != nullptr && session.scene->has_handlers();
-  Execution execution{static_cast<int>(session.dispatcher.writes().size()), rewind_request.has_value()};
+  Execution execution{static_cast<int>(session.dispatcher.writes().size()), rewind_request.has_value(),
+                      outcome.kind == Outcome::Kind::applied};
   if (outcome.kind != Outcome::Kind::applied) execution.work += kTextWork;
   if (has_handlers) execution.work += kHandlerWork;
   if (execution.rewound) return execution;

@@ -34,21 +34,20 @@ void PanicTimer::restart(double now) {
   last_update_ = now;
 }
 
-bool PendingQueries::postpone(const Message& message, const CommandOrigin& origin, int steps) {
-  const bool known = std::ranges::find(step_origins_, origin) != step_origins_.end();
-  if (same_address(message.address, "/transport/step")) {
-    if (!known && step_origins_.size() < kMax) step_origins_.push_back(origin);
-    return false;
-  }
-  if (!known || steps == 0 || !same_address(message.address, "/get")) return false;
-  if (queries_.size() >= kMax) return false;
+void StepRequests::add(const CommandOrigin& origin) {
+  if (origins_.size() < kMax) origins_.push_back(origin);
+}
+
+bool StepRequests::postpone(const Message& message, const CommandOrigin& origin) {
+  if (origins_.empty() || queries_.size() >= kMaxQueries || !same_address(message.address, "/get")) return false;
+  if (std::ranges::find(origins_, origin) == origins_.end()) return false;
   queries_.push_back({message, origin});
   return true;
 }
 
-std::vector<PendingQueries::Query> PendingQueries::consume() {
-  step_origins_.clear();
-  return std::exchange(queries_, {});
+void StepRequests::finish(const std::function<void(const CommandOrigin&)>& answer) {
+  for (const CommandOrigin& origin : origins_) answer(origin);
+  origins_.clear();
 }
 
 void LiveInput::execute_messages(bool may_step) {
@@ -56,7 +55,7 @@ void LiveInput::execute_messages(bool may_step) {
   EditScope edit_scope = show_.edit_scope();
   execute_urgent(edit_scope);
   if (show_.session->transport.steps() == 0) {
-    for (PendingQueries::Query& query : pending_queries_.consume()) {
+    for (StepRequests::Query& query : step_requests_.consume_queries()) {
       edit_scope.begin(query.origin);
       executor_.execute(query.message, query.origin, *this);
     }
@@ -64,10 +63,11 @@ void LiveInput::execute_messages(bool may_step) {
   const double start_time = show_.options.clock();
   bool drained = false;
   for (int work = kPassWork; work > 0;) {
+    if (waits_for_ticks()) break;
     if (next_command_ < commands_.size()) {
       Command& command = commands_[next_command_++];
       work -= execute(command, edit_scope);
-      const bool slow = command.evaluation != nullptr && !show_.options.fast &&
+      const bool slow = command.evaluation != nullptr && show_.options.in_real_time() &&
                         show_.options.clock() - start_time > HandlerBudget::kMaxSeconds;
       if (slow) break;
       continue;
@@ -81,11 +81,12 @@ void LiveInput::execute_messages(bool may_step) {
   }
 }
 
-// Measures the age of a panic in real time, or with --fast in simulated time, so that equal runs have equal results.
+// Measures the age of a panic in real time, or with --fast and --lockstep in simulated time, so that equal runs have
+// equal results.
 void LiveInput::update_panic_timer(bool may_step) {
   sim::World& world = show_.session->world;
   std::optional<double> step;
-  if (show_.options.fast) step = may_step ? world.timestep() : 0;
+  if (!show_.options.in_real_time()) step = may_step ? world.timestep() : 0;
   if (!panic_timer_.update(world.panic(), show_.options.clock(), step)) return;
   world.panic().end_first_second();
   record_event({TakeEvent::Kind::panic_settled, 0});
@@ -116,10 +117,15 @@ int LiveInput::execute(Command& command, EditScope& edit_scope) {
   edit_scope.begin(command.origin);
   for (Message& message : command.messages) {
     work++;
-    if (discard_if_overtaken(message, command.arrival)) continue;
-    if (pending_queries_.postpone(message, command.origin, show_.session->transport.steps())) continue;
+    const bool is_step = same_address(message.address, "/transport/step");
+    if (discard_if_overtaken(message, command.arrival)) {
+      if (is_step) step_requests_.add(command.origin);
+      continue;
+    }
+    if (step_requests_.postpone(message, command.origin)) continue;
     const CommandExecutor::Execution execution = executor_.execute(message, command.origin, *this);
     work += execution.work;
+    if (execution.applied && is_step) step_requests_.add(command.origin);
     if (execution.rewound) edit_scope.begin(command.origin);  // the undo stack was restored
   }
   if (command.evaluation == nullptr) return work;
@@ -138,11 +144,27 @@ bool LiveInput::advances_time(bool may_step) {
   return may_step && (!transport.paused() || transport.consume_step());
 }
 
+// With --lockstep, messages that the last pass left are executed at once.
+bool LiveInput::is_paced() const {
+  if (show_.options.lockstep) return !waits_for_ticks() && next_command_ >= commands_.size();
+  return !show_.options.fast || show_.session->transport.paused();
+}
+
+// Answers requests for ticks that are finished, or were canceled by a pause.
+void LiveInput::end_pass() {
+  if (show_.session->transport.steps() > 0) return;
+  step_requests_.finish([&](const CommandOrigin& origin) {
+    if (origin.source == CommandSource::panel) return;
+    const auto tick = static_cast<double>(show_.session->world.tick());
+    show_.output().push({Outgoing::Destination::reply, origin, {"/transport/stepped", {Arg::of(tick)}}});
+  });
+}
+
 void LiveInput::begin_handlers() { handler_budget_.begin(show_.options.clock()); }
 
-// With --fast there is no limit.
+// Outside of real time there is no limit.
 bool LiveInput::may_call_handler(std::uint64_t) const {
-  return show_.options.fast || !handler_budget_.exceeded(show_.options.clock());
+  return !show_.options.in_real_time() || !handler_budget_.exceeded(show_.options.clock());
 }
 
 // The number of calls depends on real time, so it is recorded as an input if messages wait for the next pass.
@@ -170,7 +192,7 @@ Outcome LiveInput::rewind(const Transport::RewindRequest& request, const Command
 }
 
 bool LiveInput::must_rerun() {
-  if (!show_.link.on_rerun || show_.options.fast) return true;
+  if (!show_.link.on_rerun || !show_.options.in_real_time()) return true;
   show_.link.on_rerun();
   return false;
 }

@@ -2,7 +2,9 @@
 // per pass. While a take is replayed, it rejects them. [sim]
 #pragma once
 
+#include <functional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/commands/urgent.h"
@@ -46,23 +48,28 @@ class PanicTimer {
   double last_update_ = 0;  // s
 };
 
-/// Queries (/get) that wait for an earlier /transport/step of the same sender.
-class PendingQueries {
+/// Requests for ticks (/transport/step) that are not finished: their senders get an answer, and their queries (/get)
+/// wait.
+class StepRequests {
  public:
-  static constexpr std::size_t kMax = 256;
+  static constexpr std::size_t kMax = 4096;
+  static constexpr std::size_t kMaxQueries = 256;
 
-  /// Call it for each message. Remembers the senders of /transport/step, and postpones their queries while `steps`
-  /// requested ticks are left. Returns true if the message was postponed.
-  bool postpone(const Message& message, const CommandOrigin& origin, int steps);
+  /// Notes a request for ticks that was accepted.
+  void add(const CommandOrigin& origin);
+  /// Postpones a query whose sender waits for ticks. Returns true if the message was postponed.
+  bool postpone(const Message& message, const CommandOrigin& origin);
+  /// Calls `answer` with the sender of each request, and ends the requests.
+  void finish(const std::function<void(const CommandOrigin&)>& answer);
   struct Query {
     Message message;
     CommandOrigin origin;
   };
   /// Returns the postponed queries and removes them.
-  std::vector<Query> consume();
+  std::vector<Query> consume_queries() { return std::exchange(queries_, {}); }
 
  private:
-  std::vector<CommandOrigin> step_origins_;  // senders of an unfinished /transport/step
+  std::vector<CommandOrigin> origins_;
   std::vector<Query> queries_;
 };
 
@@ -85,7 +92,8 @@ class LiveInput final : public InputSource {
   Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
   Outcome request_take(const Message& message) override { return recording_.request(message); }
   bool must_rerun() override;
-  bool is_paced() const override { return !show_.options.fast || show_.session->transport.paused(); }
+  bool is_paced() const override;
+  void end_pass() override;
 
   /// Answers queries and rejects all other commands of this pass. /take/stop sets `stop` to true, and a panic remains
   /// queued for the next pass. If `stop` is null, both are rejected as well.
@@ -100,6 +108,7 @@ class LiveInput final : public InputSource {
   void update_panic_timer(bool may_step);
   void execute_urgent(EditScope& edit_scope);
   int execute(Command& command, EditScope& edit_scope);
+  bool waits_for_ticks() const { return show_.options.lockstep && show_.session->transport.steps() > 0; }
   bool discard_if_overtaken(const Message& message, std::uint64_t arrival);
   void reject_urgent(const char* reason, bool* stop);
   void reject(const Message& message, const CommandOrigin& origin, const char* reason, bool* stop);
@@ -115,7 +124,7 @@ class LiveInput final : public InputSource {
   std::uint64_t snapshot_requests_ = 0;
   std::vector<UrgentRequest> urgent_;   // scratch
   UrgentPrecedence urgent_precedence_;  // decides which messages urgent requests discard
-  PendingQueries pending_queries_;
+  StepRequests step_requests_;
   PanicTimer panic_timer_;
   HandlerBudget handler_budget_;
 };
