@@ -167,6 +167,7 @@ function warn(...) end
 ---@field joints joint_list # read-only. Its joints, in stream order; call it to iterate over those that match a pattern.
 ---@field motors motor_list # read-only. Its motors, in stream order; call it to iterate over those that match a pattern.
 ---@field sensors sensor_list # read-only. Its sensors, in the order of their creation.
+---@field tendons tendon_list # read-only. Its tendons, in the order of their creation.
 ---@field behaviors behavior_list # read-only. Its behaviors, in the order in which they run.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@field position vec3like # m, -10000 .. 10000. Position of the root's link frame, world; setting it moves the whole body rigidly. Beyond 10 km, the stability check restores the body.
@@ -378,6 +379,10 @@ function part_:apply_torque(torque) end
 ---@field angular_stop_erp vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, about the axis.
 ---@field angular_stop_cfm vec3like|number # rad/(N·m), 0 .. 1, default 0 0 0. Compliance of locks and limits about the axis.
 ---@field armature number # kg | kg·m², 0 .. 1000000, default 0. Inertia of the motor's rotor along or about the own axis, as it acts on the joint (with a gear, times the square of its ratio); it adds to that of the parts.
+---@field cone_limit number # rad, 0.01 .. 3.141592653589793, default 3.14159. Largest swing: the angle between the joint's z axes on both parts, for ball joints; π: free.
+---@field twist_lower number # rad, -3.141592653589793 .. 3.141592653589793, default 3.14159. Lower limit of the twist of a ball joint; equal to the upper: locked; above it: free.
+---@field twist_upper number # rad, -3.141592653589793 .. 3.141592653589793, default -3.14159. Upper limit of the twist of a ball joint.
+---@field rotation_limit number # rad, 0.01 .. 3.141592653589793, default 3.14159. Largest angle of the whole rotation of a ball joint, about any axis; π: free.
 ---@field value number # read-only, m | rad. Position of the own axis.
 ---@field speed number # read-only, m/s | rad/s. Speed of the own axis.
 ---@field angles vec3 # read-only, rad. Angles in the joint's own order of axes, as used by limits and servos.
@@ -387,6 +392,8 @@ function part_:apply_torque(torque) end
 ---@field rotation quat # read-only. Rotation of the child's joint frame, world: x y z w.
 ---@field reaction_force vec3 # read-only, N. Force of the parent on the child at the joint, joint's frame on the parent, mean of the last tick.
 ---@field reaction_torque vec3 # read-only, N·m. Torque of the parent on the child about the joint, joint's frame on the parent, mean of the last tick.
+---@field swing number # read-only, rad. Angle between the joint's z axes on both parts, as cone_limit.
+---@field twist number # read-only, rad. Rotation about the z axis that precedes the swing; within ±π, or nearest to the twist's limits.
 ---@field axis vec3 # read-only. Direction of the own axis, world.
 local joint_ = {}
 
@@ -403,6 +410,10 @@ local joint_ = {}
 ---@field angular_stop_erp? vec3like|number # 0 .. 1, default 0.2 0.2 0.2. Share of the error of a lock or limit corrected per substep, about the axis.
 ---@field angular_stop_cfm? vec3like|number # rad/(N·m), 0 .. 1, default 0 0 0. Compliance of locks and limits about the axis.
 ---@field armature? number # kg | kg·m², 0 .. 1000000, default 0. Inertia of the motor's rotor along or about the own axis, as it acts on the joint (with a gear, times the square of its ratio); it adds to that of the parts.
+---@field cone_limit? number # rad, 0.01 .. 3.141592653589793, default 3.14159. Largest swing: the angle between the joint's z axes on both parts, for ball joints; π: free.
+---@field twist_lower? number # rad, -3.141592653589793 .. 3.141592653589793, default 3.14159. Lower limit of the twist of a ball joint; equal to the upper: locked; above it: free.
+---@field twist_upper? number # rad, -3.141592653589793 .. 3.141592653589793, default -3.14159. Upper limit of the twist of a ball joint.
+---@field rotation_limit? number # rad, 0.01 .. 3.141592653589793, default 3.14159. Largest angle of the whole rotation of a ball joint, about any axis; π: free.
 
 ---Drives a joint. Properties with three axes accept a vec3, or one number for the own axis (booleans: for all axes).
 ---@class motor
@@ -685,6 +696,63 @@ function body_:sensor(key) end
 ---@field [integer] imu|range_finder|zone|touch
 ---@overload fun(self: body, wanted?: string|imu|range_finder|zone|touch): fun(): imu|range_finder|zone|touch, integer
 
+-- Tendons.
+
+---Adds a tendon through two or more points on parts, also of other bodies. Its length at this moment becomes its
+---`rest_length`, unless that is an option. It is removed with each of these bodies.
+---@param name string # A name of your choice, unique among the tendons of the body.
+---@param opts tendon_opts # `points`, and properties such as `stiffness`.
+---@return tendon
+function body_:add_tendon(name, opts) end
+
+---Returns a tendon by name or number (-1: the last).
+---@param key string|integer|tendon # Its name, its number from 1, or -1 for the last.
+---@return tendon
+function body_:tendon(key) end
+
+---A cable that slides through points on parts, with the same tension along its length.
+---@class tendon
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field body body # read-only. The body that it belongs to.
+---@field points tendon_point[] # read-only. Its points, in their order.
+---@field enabled boolean # default true. False: it pulls at nothing.
+---@field stiffness number # N/m, 0 .. 1000000000, default 10000. Tension per stretch beyond the rest length.
+---@field damping number # N·s/m, 0 .. 1000000, default 10. Tension per speed at which it lengthens, while it is taut.
+---@field rest_length number # m, 0 .. 10000, default 1. Length up to which it is slack; at its creation its length.
+---@field tension number # N, 0 .. 1000000000, default 0. Tension that is added to that of its stretch, also while slack.
+---@field max_tension number # N, 0 .. 1000000000, default 0. Largest tension; beyond it, the tendon slips. 0: no limit.
+---@field pushes boolean # default false. True: a spring that also pushes when it is shorter than its rest length.
+---@field radius number # m, 0 .. 10, default 0.004. Radius with which it is drawn; 0: invisible.
+---@field length number # read-only, m. Length of the line through its points.
+---@field speed number # read-only, m/s. Rate of change of its length; positive: it lengthens.
+---@field force number # read-only, N. Its tension, mean of the last tick; negative: it pushes.
+local tendon_ = {}
+
+---Removes the tendon.
+function tendon_:remove() end
+
+---A point of a tendon.
+---@class tendon_point
+---@field part part # The part that it is on.
+---@field position vec3 # Its place in m, in the part's link frame.
+
+---@class tendon_opts
+---@field points table[] # At least two points: `{ part, x, y, z }` or `{ part, vec3 }`, in m in the part's link frame; default: its origin. A part of the body can be given by its name.
+---@field enabled? boolean # default true. False: it pulls at nothing.
+---@field stiffness? number # N/m, 0 .. 1000000000, default 10000. Tension per stretch beyond the rest length.
+---@field damping? number # N·s/m, 0 .. 1000000, default 10. Tension per speed at which it lengthens, while it is taut.
+---@field rest_length? number # m, 0 .. 10000, default 1. Length up to which it is slack; at its creation its length.
+---@field tension? number # N, 0 .. 1000000000, default 0. Tension that is added to that of its stretch, also while slack.
+---@field max_tension? number # N, 0 .. 1000000000, default 0. Largest tension; beyond it, the tendon slips. 0: no limit.
+---@field pushes? boolean # default false. True: a spring that also pushes when it is shorter than its rest length.
+---@field radius? number # m, 0 .. 10, default 0.004. Radius with which it is drawn; 0: invisible.
+
+---The tendons of a body.
+---@class tendon_list
+---@field [integer] tendon
+---@overload fun(self: body, wanted?: string|tendon|(string|tendon)[]): fun(): tendon, integer
+
 -- The world, and the callbacks of a scene.
 
 ---The world. The top level of a scene describes the objects; callbacks act on them.
@@ -828,6 +896,32 @@ function sim:add_cone_shape(name, radius, height) end
 ---@param opts? mesh_opts
 ---@return shape
 function sim:add_convex_mesh_shape(name, source, opts) end
+
+---@class mesh_shape_opts
+---@field scale? number|vec3like # default 1.
+
+---Creates the surface of a mesh file, which static and kinematic parts collide with, hollows included. It has no inside:
+---both of its sides hold others. Call it at the top level of the scene.
+---@param name string # A name of your choice, unique among shapes.
+---@param file string # STL, OBJ, DAE, PLY or glTF.
+---@param opts? mesh_shape_opts
+---@return shape
+function sim:add_mesh_shape(name, file, opts) end
+
+---@class heightfield_opts
+---@field size vec3like|number[] # m, its width along x and length along y.
+---@field rows? integer # 2 .. 1024, number of heights along y.
+---@field columns? integer # 2 .. 1024, number of heights along x.
+---@field heights? number[]|fun(x: number, y: number): number # m, in rows from -y to +y, each from -x to +x; or a function of the place.
+---@field image? string # A PNG or JPEG file of at most 1024 × 1024 pixels instead of rows, columns and heights; its upper side is +y.
+---@field height? number # m, height of white in the image; black is at 0.
+
+---Creates terrain from heights on a grid, centered on the part's position, for static and kinematic parts. Call it at
+---the top level of the scene.
+---@param name string # A name of your choice, unique among shapes.
+---@param opts heightfield_opts
+---@return shape
+function sim:add_heightfield_shape(name, opts) end
 
 ---Creates a shape that consists of other shapes; see `shape:add_child`.
 ---@param name string # A name of your choice, unique among shapes.

@@ -25,6 +25,7 @@ struct Inertial {
 struct Image;
 struct MeshLook;
 struct MeshModel;
+class Surface;
 
 enum class ShapeKind { plane, sphere, box, cylinder, capsule, cone, mesh, compound, ellipsoid };
 
@@ -42,9 +43,14 @@ struct ShapeModel {
   /// dimensions define the collision shape, and `mesh` is used for drawing only, at `mesh_pose` in the shape's frame.
   std::shared_ptr<const MeshModel> mesh;
   Pose mesh_pose;
+  /// Not null, for `kind` mesh: it collides with these triangles of the mesh, not with its hull. Static parts only.
+  std::shared_ptr<const Surface> surface;
   bool mesh_colors = true;  ///< False: a color or texture of the model file replaces the mesh's own colors.
   std::shared_ptr<const Image> texture;  ///< Multiplies the color; null: none. Meshes need texture coordinates.
 };
+
+/// True if only static parts can have this shape: it has no inside, and thus no mass.
+inline bool is_ground(const ShapeModel& shape) { return shape.kind == ShapeKind::plane || shape.surface != nullptr; }
 
 /// A geometry placed in its link's frame.
 struct PlacedShape {
@@ -95,7 +101,22 @@ struct SpringModel {
   double damping = 0;    ///< N·m·s/rad or N·s/m.
 };
 
-struct JointModel {
+/// Limits of the rotation of a spherical joint, rad; none by default.
+struct BallLimitsModel {
+  double cone = kPi;         ///< Largest angle between the z axes of the joint's two frames; π: free.
+  double twist_lower = kPi;  ///< Of the rotation about the axis; above `twist_upper`: free.
+  double twist_upper = -kPi;
+  double angle = kPi;  ///< Largest angle of the whole rotation; π: free.
+};
+
+/// Forces of a joint that depend on its motion only, and the inertia of its rotor.
+struct JointDynamics {
+  double damping = 0;   ///< N·m·s/rad or N·s/m.
+  double friction = 0;  ///< Coulomb limit, N·m or N.
+  double armature = 0;  ///< Inertia of the rotor, kg·m² or kg.
+};
+
+struct JointModel : JointDynamics {
   std::string name;
   JointType type = JointType::revolute;
   int parent = -1;  ///< Index into BodyModel::links.
@@ -107,10 +128,8 @@ struct JointModel {
   double upper = 0;
   double effort = 10000;  ///< Largest torque or force, N·m or N; the default replaces 0 and absent values.
   double velocity = 0;    ///< Largest speed, rad/s or m/s, from the file; 0: limited by the effort only.
-  double damping = 0;     ///< <dynamics damping>, N·m·s/rad or N·s/m.
-  double friction = 0;    ///< <dynamics friction>, Coulomb limit, N·m or N.
   double start = 0;       ///< Joint value used for `LinkModel::start`.
-  double armature = 0;    ///< Inertia of the rotor, kg·m² or kg.
+  BallLimitsModel ball;   ///< Of a spherical joint.
   SpringModel spring;     ///< If not driven; else the gains of the actuator, for the mode spring.
   bool driven = true;     ///< False: no actuator of the file drives it, so its motor starts in mode off.
   /// Index of the joint that this one follows; -1: none. value = mimic_multiplier * (value of joint `mimic`) +
@@ -125,6 +144,22 @@ struct JointModel {
   }
 };
 
+/// A cable that slides through points on links. It pulls with stiffness·(length - rest) + damping·(speed of the
+/// length).
+struct TendonModel {
+  struct Point {
+    int link = 0;  ///< Index into BodyModel::links.
+    Vec3 position{0, 0, 0};
+  };
+  std::string name;
+  std::vector<Point> points;
+  double stiffness = 0;          ///< N/m
+  double damping = 0;            ///< N·s/m
+  std::optional<double> rest;    ///< m; empty: its length at the start.
+  bool pushes = false;           ///< True: a spring that also pushes.
+  std::optional<double> radius;  ///< With which it is drawn, m; empty: the default.
+};
+
 /// A named frame: that of a link that was merged into its parent because its joint is fixed, or a site of an MJCF file;
 /// scripts can address it (`body:link(name)`).
 struct MergedLink {
@@ -132,6 +167,17 @@ struct MergedLink {
   int link = -1;      ///< Index of the link it was merged into, or that it is on.
   Pose offset;        ///< Its frame in that link's frame.
   bool site = false;  ///< True for a site.
+};
+
+/// A sensor of an MJCF file.
+struct SensorModel {
+  enum class Kind : std::uint8_t { imu, range_finder, touch };
+  std::string name;
+  Kind kind = Kind::imu;
+  int link = -1;
+  Pose pose;          ///< In the link's frame. A range finder looks along z.
+  double radius = 0;  ///< Of the region of a touch sensor, m.
+  double range = 0;   ///< Of a range finder, m; 0: the default.
 };
 
 /// Two links with overlapping collision shapes.
@@ -188,10 +234,12 @@ struct BodyModel {
   /// Joints that close loops: each connects two links of the tree. Their child is never the root, and their value at
   /// the start is that of the links' start poses; no motor drives them.
   std::vector<JointModel> loops;
+  std::vector<TendonModel> tendons;
   std::vector<MergedLink> merged;
   /// Pairs of links without a common joint that overlap with all joints at 0; excluded from collision by default.
   std::vector<Overlap> overlaps;
   std::vector<std::pair<int, int>> exclusions;  ///< Pairs of links that the file excludes from collision, a < b.
+  std::vector<SensorModel> sensors;
   std::vector<FileLink> file_links;
   std::vector<FileJoint> file_joints;
   std::vector<Problem> problems;

@@ -47,6 +47,7 @@ class ConvexSolid {
     half_ = shape.height / 2;
     radii_ =
         glm::mat3_cast(pose.rotation) * Mat3(shape.size.x / 2, 0, 0, 0, shape.size.y / 2, 0, 0, 0, shape.size.z / 2);
+    if (shape.surface != nullptr) kind_ = ShapeKind::compound;  // it has no inside
     if (kind_ == ShapeKind::box) {
       for (int i = 0; i < 8; ++i) {
         const Vec3 sign((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, (i & 4) != 0 ? 0.5 : -0.5);

@@ -47,6 +47,7 @@ inline std::vector<Sample> samples(const Store& store) {
       {&sim::zone_table(), arm + "/sensor/zone", {}, "sim:body('arm'):sensor('zone')"},
       {&sim::touch_table(), arm + "/sensor/skin", {}, "sim:body('arm'):sensor('skin')"},
       {&sim::Gear::table(), "/physics/gear/rack", {}, "sim:gear('rack')"},
+      {&sim::Tendon::table(), arm + "/tendon/cord", {}, "sim:body('arm'):tendon('cord')"},
       {&store.table(find_property(store, "/scene").value().node), "/scene", {}, "params"},
   };
 }

@@ -60,8 +60,8 @@ TEST(Lockstep, MessagesActInTheirOrder) {
   show.send("/transport/step");
   show.send("/physics/sim/gravity", 0, 0, -3);
   show.ticks(10);
-  EXPECT_EQ(sent(show), (Lines{"/heard 1 0", "/tick 0 -1", "/tick 1 -1", "/transport/stepped 2",
-                                      "/physics/sim/tick 2", "/heard 2 2", "/tick 2 -2", "/transport/stepped 3"}));
+  EXPECT_EQ(sent(show), (Lines{"/heard 1 0", "/tick 0 -1", "/tick 1 -1", "/transport/stepped 2", "/physics/sim/tick 2",
+                               "/heard 2 2", "/tick 2 -2", "/transport/stepped 3"}));
   EXPECT_EQ(show.read("/physics/sim/gravity", 2), -3);
 }
 

@@ -300,5 +300,30 @@ TEST(UrdfDialects, BallJointsAreSpherical) {
   }
 }
 
+TEST(UrdfDialects, BallJointsHaveConesAndTwistLimits) {
+  const auto limits = [](const std::string& attributes) {
+    return import_text("<robot name='r'>\n" + link_text("base") + link_text("w") +
+                       "<joint name='j' type='spherical'><parent link='base'/><child link='w'/><limit " + attributes +
+                       "/></joint></robot>");
+  };
+  const BodyModel m = limits("cone='0.5' twist_lower='-0.2' twist_upper='0.3' rotation='1.5'");
+  EXPECT_EQ(m.joints[0].ball.cone, 0.5);
+  EXPECT_EQ(m.joints[0].ball.twist_lower, -0.2);
+  EXPECT_EQ(m.joints[0].ball.twist_upper, 0.3);
+  EXPECT_EQ(m.joints[0].ball.angle, 1.5);
+  EXPECT_EQ(all_problems(m).find("ignored"), std::string::npos) << all_problems(m);
+  const BodyModel free = limits("effort='1'");
+  EXPECT_EQ(free.joints[0].ball.cone, kPi);
+  EXPECT_GT(free.joints[0].ball.twist_lower, free.joints[0].ball.twist_upper);
+  EXPECT_EQ(free.joints[0].ball.angle, kPi);
+  EXPECT_EQ(limits("cone='-1'").joints[0].ball.cone, kPi);
+  const BodyModel half = limits("twist_lower='0'");
+  EXPECT_GT(half.joints[0].ball.twist_lower, half.joints[0].ball.twist_upper);
+  EXPECT_TRUE(has_problem(half, Severity::warning, "has only one limit of its twist", 4)) << all_problems(half);
+  const BodyModel crossed = limits("twist_lower='1' twist_upper='-0.5'");
+  EXPECT_GT(crossed.joints[0].ball.twist_lower, crossed.joints[0].ball.twist_upper);
+  EXPECT_TRUE(has_problem(crossed, Severity::warning, "twist_lower 1 is above twist_upper -0.5", 4));
+}
+
 }  // namespace
 }  // namespace limber::model

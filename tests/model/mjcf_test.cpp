@@ -9,6 +9,7 @@
 
 #include "files.h"
 #include "import_text.h"
+#include "mjcf_text.h"
 #include "solids.h"
 
 namespace limber::model {
@@ -17,30 +18,14 @@ namespace {
 using test::all_problems;
 using test::expect_near;
 using test::has_problem;
-
-Result<std::shared_ptr<const BodyModel>> try_mjcf(const std::string& text, const ImportOptions& options = {}) {
-  MeshLibrary meshes;
-  return import_model_text(text, "model.xml", options, meshes);
-}
-
-BodyModel mjcf(const std::string& text, const ImportOptions& options = {}) {
-  const auto model = try_mjcf(text, options);
-  if (model) return **model;
-  ADD_FAILURE() << model.error();
-  return {};
-}
+using test::jointed;
+using test::mjcf;
+using test::try_mjcf;
 
 // one free body with these elements
 BodyModel free_body(const std::string& content, const std::string& compiler = "") {
   return mjcf("<mujoco><compiler " + compiler + "/><worldbody><body name='b'><freejoint/>" + content +
               "</body></worldbody></mujoco>");
-}
-
-// a fixed base with one child that has these joints
-BodyModel jointed(const std::string& joints, const std::string& rest = "", const std::string& compiler = "") {
-  return mjcf("<mujoco><compiler " + compiler +
-              "/><worldbody><body name='base'><geom size='.1'/><body name='arm' pos='0 0 1'>" + joints +
-              "<geom type='box' size='.1 .2 .3'/></body></body></worldbody>" + rest + "</mujoco>");
 }
 
 Quat home_rotation(const std::string& orientation, const std::string& compiler = "") {
@@ -456,18 +441,18 @@ TEST(Mjcf, ReportsWhatItDoesNotSupportOncePerKind) {
   const BodyModel m = mjcf(
       R"(<mujoco><option timestep=".01"/><visual/><worldbody><light/><light/><body name="b"><joint name="j" stiffness="3"/>
 <geom size=".1" friction="1"/><geom type="hfield" hfield="h"/><composite/></body></worldbody>
-<tendon><fixed stiffness="1"><joint joint="j" coef="1"/></fixed><spatial/></tendon><sensor><gyro/><gyro/></sensor><actuator><muscle tendon="t"/></actuator></mujoco>)");
+<tendon><fixed stiffness="1"><joint joint="j" coef="1"/></fixed><spatial/></tendon><sensor><magnetometer/><magnetometer/></sensor><actuator><muscle tendon="t"/></actuator></mujoco>)");
   EXPECT_TRUE(has_problem(m, Severity::note, "<option> ignored", 1)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<light> ignored: the scene sets the view (2 places)", 1))
       << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::note, "<geom>: friction has no effect", 2)) << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::error, "<geom type='hfield'> ignored", 2)) << all_problems(m);
+  EXPECT_TRUE(has_problem(m, Severity::error, "hfield 'h' does not exist", 2)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::warning, "<composite> inside <body> ignored", 2)) << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::warning, "stiffness, damping, friction and limits of <fixed>", 3))
       << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::warning, "<spatial> in <tendon> ignored: it pulls at nothing", 3))
       << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::note, "<gyro> in <sensor> ignored: nothing is measured (2 places)", 3))
+  EXPECT_TRUE(has_problem(m, Severity::note, "<magnetometer> in <sensor> ignored: nothing is measured (2 places)", 3))
       << all_problems(m);
   EXPECT_TRUE(has_problem(m, Severity::warning, "<muscle> that drives no joint ignored", 3)) << all_problems(m);
 }

@@ -127,13 +127,26 @@ TEST(Reported, ReportsHullsThatFillAHollow) {
   EXPECT_EQ(all_problems(solid).find("hollow"), std::string::npos) << all_problems(solid);
 }
 
-TEST(Reported, ReportsConcaveMeshes) {
-  const BodyModel m = import_text(R"(<robot name="r"><link name="a">
-<collision concave="yes"><geometry><box size="1 1 1"/></geometry></collision>
-<collision concave="no"><geometry><box size="1 1 1"/></geometry></collision>
-<collision><geometry><box size="1 1 1" concave="yes"/></geometry></collision></link></robot>)");
-  EXPECT_TRUE(has_problem(m, Severity::warning, "link 'a': concave=\"yes\" is not supported", 2)) << all_problems(m);
-  EXPECT_TRUE(has_problem(m, Severity::warning, "… and 1 more of this kind", 2)) << all_problems(m);
+TEST(Reported, ConcaveMeshesAreSurfacesOfFixedLinksOnly) {
+  const test::Files files;
+  test::Solid trough = test::box({0.4, 0.4, 0.04});
+  files.write("trough.stl", test::binary_stl(trough));
+  files.write("robot.urdf", R"(<robot name="r"><link name="a">
+<collision concave="yes"><geometry><mesh filename="trough.stl"/></geometry></collision>
+<collision concave="no"><geometry><mesh filename="trough.stl"/></geometry></collision></link><link name="b">
+<inertial><mass value="1"/></inertial><collision><geometry><mesh filename="trough.stl" concave="yes"/></geometry></collision>
+</link><joint name="j" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint></robot>)");
+  const auto model = import_urdf(files.path("robot.urdf"));
+  ASSERT_TRUE(model) << model.error();
+  const std::vector<LinkModel>& links = (*model)->links;
+  EXPECT_NE(links[0].collisions[0].shape.surface, nullptr);
+  EXPECT_EQ(links[0].collisions[0].shape.kind, ShapeKind::mesh) << "not the box that it is";
+  EXPECT_EQ(links[0].collisions[1].shape.surface, nullptr);
+  EXPECT_EQ(links[1].collisions[0].shape.surface, nullptr);
+  EXPECT_TRUE(has_problem(**model, Severity::warning,
+                          "link 'b' can move; its mesh with concave=\"yes\" collides as its convex hull", 4))
+      << all_problems(**model);
+  EXPECT_EQ(all_problems(**model).find("link 'a' can move"), std::string::npos);
 }
 
 TEST(Reported, SelfCollideExcludesALink) {

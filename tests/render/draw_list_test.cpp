@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "render/stage.h"
+#include "sim/tendons/tendon_list.h"
 
 namespace limber::render::test {
 namespace {
@@ -114,6 +115,47 @@ TEST(DrawList, PlanesAreInfinite) {
   EXPECT_EQ(list.planes()[0].origin.z, -0.5F);
   EXPECT_EQ(list.planes()[0].normal, glm::vec3(0, 0, 1));
   EXPECT_EQ(list.planes()[0].tint, glm::vec3(1, 0, 0));
+}
+
+// One cylinder per segment, along it, in the color of its tension; radius 0 hides the tendon.
+TEST(DrawList, DrawsTendons) {
+  TestScene scene;
+  sim::Part& a = scene.add("a", box(Vec3(0.1)), {0, 0, 0});
+  sim::Shape& shape = **scene.world.shapes().add("b", box(Vec3(0.1)));
+  sim::Part& b = **(*scene.world.add_body("b"))->add_part("part", shape, 1, {{3, 0, 0}, quat_identity()});
+  (void)scene.world.tendons().add(a.body(), "line", {{&a, {0, 0, 0}}, {&a, {0, 0, 4}}, {&b, {0, 0, 0}}}).value();
+  scene.set("/physics/body/a/tendon/line/radius", {0.2});
+  const auto slack = scene.snapshot();
+  DrawList list;
+  list.update(*slack, *slack, 1, kEye);
+  ASSERT_EQ(list.instances().size(), 4u);
+  const Instance* segments[2] = {};
+  for (const Instance& instance : list.instances()) {
+    if (instance.position[2] != 2.0F) continue;
+    segments[instance.position[0] == 0 ? 0 : 1] = &instance;
+  }
+  ASSERT_TRUE(segments[0] != nullptr && segments[1] != nullptr) << "their middles";
+  const auto half_length = [](const Instance& s) { return s.extent[2] + s.rounding_radius; };
+  EXPECT_NEAR(half_length(*segments[0]), 2, 1e-5);
+  EXPECT_NEAR(half_length(*segments[1]), 2.5, 1e-5);
+  EXPECT_NEAR(segments[0]->extent[0] + segments[0]->rounding_radius, 0.2, 1e-5);
+  const float* const q = segments[1]->rotation;
+  const Vec3 along = quat_xyzw(q[0], q[1], q[2], q[3]) * Vec3(0, 0, 1);
+  EXPECT_LT(glm::length(along - Vec3(0.6, 0, -0.8)), 1e-5);
+  const float pale = segments[0]->diffuse[2] / segments[0]->diffuse[0];
+  EXPECT_GT(pale, 0.7F);
+  scene.set("/physics/body/a/tendon/line/tension", {1000});
+  scene.world.step();
+  const auto taut = scene.snapshot();
+  list.update(*taut, *taut, 1, kEye);
+  bool has_red = false;
+  for (const Instance& instance : list.instances())
+    has_red = has_red || instance.diffuse[2] / instance.diffuse[0] < 0.2F * pale;
+  EXPECT_TRUE(has_red);
+  scene.set("/physics/body/a/tendon/line/radius", {0});
+  const auto hidden = scene.snapshot();
+  list.update(*hidden, *hidden, 1, kEye);
+  EXPECT_EQ(list.instances().size(), 2u);
 }
 
 TEST(DrawList, SkipsNonFinitePoses) {

@@ -7,6 +7,7 @@
 
 #include "player.h"
 #include "sim/behavior/behavior_group.h"
+#include "sim/world/joint.h"
 #include "support/skip.h"
 
 namespace limber {
@@ -35,6 +36,41 @@ TEST(Scenes, TheQuadrupedStandsThenTrotsAtTheSpeedOfItsStride) {
       << "stride times pace, per fraction of a step with the foot on the ground";
   EXPECT_GT(trunk.pose().position.x, 2);
   EXPECT_LT(std::abs(trunk.pose().position.y), 1);
+  EXPECT_EQ(player.engine->faults(), 0u);
+}
+
+// Wild movements press the dancer's limbs against their limits, which hold within half a degree.
+TEST(Scenes, TheDancerDancesWithinItsLimits) {
+  Player player("dancer.lua");
+  player.send("/scene/vigor", {Arg::of(1.6)});
+  player.play(2);
+  constexpr double kHeld = 0.5 * kPi / 180;
+  double highest = 0, lowest = 10, turned = 0;
+  int at_limits = 0;
+  double heading = euler_of(player.body("dancer").find_part("chest")->pose().rotation).z;
+  for (int tick = 0; tick < 60 * 12; tick++) {
+    player.engine->tick();
+    for (const auto& joint : player.body("dancer").joints()) {
+      if (joint->type() != model::JointType::spherical) continue;
+      const std::string path = "/physics/body/dancer/joint/" + joint->name() + "/";
+      const double excess = player.value(path + "swing") - player.value(path + "cone_limit");
+      const double twist = player.value(path + "twist");
+      ASSERT_LT(excess, kHeld) << path << " at " << tick;
+      ASSERT_GT(twist, player.value(path + "twist_lower") - kHeld) << path << " at " << tick;
+      ASSERT_LT(twist, player.value(path + "twist_upper") + kHeld) << path << " at " << tick;
+      if (excess > -kHeld) at_limits++;
+    }
+    const double hand = player.body("dancer").find_part("left_hand")->pose().position.z;
+    highest = std::max(highest, hand);
+    lowest = std::min(lowest, hand);
+    const double now = euler_of(player.body("dancer").find_part("chest")->pose().rotation).z;
+    turned += std::remainder(now - heading, 2 * kPi);
+    heading = now;
+  }
+  EXPECT_GT(at_limits, 60);
+  EXPECT_GT(highest - lowest, 0.5);
+  EXPECT_NEAR(turned, 2 * kPi * 0.15 * 12, 1);
+  EXPECT_GT(player.body("dancer").find_part("head")->pose().position.z, 1.3);
   EXPECT_EQ(player.engine->faults(), 0u);
 }
 

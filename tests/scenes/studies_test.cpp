@@ -1,5 +1,6 @@
 // The studies in docs/learn: each step plays, the result is the finished file in scripts/studies, and messages, console
 // lines and commands on the pages work.
+#include <algorithm>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -7,6 +8,7 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -31,12 +33,18 @@ struct Study {
 const std::vector<Study> kStudies = {
     {"study_ring", "scripts/my_ring.lua", {{"scripts/my_ring.lua", "ring.lua"}}},
     {"study_creature", "scripts/my_creature.lua", {{"scripts/my_creature.lua", "creature.lua"}}},
+    {"study_tentacle", "scripts/my_tentacle.lua", {{"scripts/my_tentacle.lua", "../tentacle.lua"}}},
+    {"study_dancer", "scripts/my_dancer.lua", {{"scripts/my_dancer.lua", "../dancer.lua"}}},
     {"study_flock", "scripts/my_flock.lua", {{"scripts/my_flock.lua", "flock.lua"}}},
     {"study_live_coding",
      "scripts/my_live.lua",
      {{"scripts/my_live.lua", "live.lua"}, {"behaviors_lua/ripple.lua", "behaviors_lua/ripple.lua"}}},
     {"study_show", "my_show/scripts/main.lua", {{"my_show/scripts/main.lua", "show/scripts/main.lua"}}},
     {"study_batch", "scripts/my_batch.lua", {{"scripts/my_batch.lua", "batch.lua"}}}};
+
+const Study& study_of(std::string_view page) {
+  return *std::find_if(kStudies.begin(), kStudies.end(), [&](const Study& study) { return page == study.page; });
+}
 
 std::string page_of(const Study& study) { return "docs/learn/" + study.page + ".md"; }
 
@@ -204,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(Docs, Studies, testing::ValuesIn(kStudies),
 
 TEST(StudyOfShow, ThePresetsAreThoseOfThePage) {
   ReaderFolder reader;
-  const Study& study = kStudies[4];
+  const Study& study = study_of("study_show");
   reader.apply_all(study);
   Player player(reader.path(study.scene));
   player.play(0.1);
@@ -255,11 +263,11 @@ void check_console(Player& player, const DocBlock& block) {
 
 TEST(StudyOfLiveCoding, TheConsoleAnswersAsDocumented) {
   ReaderFolder reader;
-  reader.apply_all(kStudies[3]);
-  Player player(reader.path(kStudies[3].scene));
+  reader.apply_all(study_of("study_live_coding"));
+  Player player(reader.path(study_of("study_live_coding").scene));
   player.play(0.5);
   int blocks = 0;
-  for (const DocBlock& block : blocks_of_page(page_of(kStudies[3]))) {
+  for (const DocBlock& block : blocks_of_page(page_of(study_of("study_live_coding")))) {
     if (block.language != "console") continue;
     check_console(player, block);
     blocks++;
@@ -287,10 +295,10 @@ TEST(FirstMinutes, ConsoleAndMessagesWork) {
 TEST(StudyOfBatch, TheCommandsWork) {
   LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer, "the program's tests run the same commands");
   ReaderFolder reader;
-  reader.apply_all(kStudies[5]);
+  reader.apply_all(study_of("study_batch"));
   std::string commands;
   bool in_block = false;
-  for (const std::string& line : lines_of_page(page_of(kStudies[5]))) {
+  for (const std::string& line : lines_of_page(page_of(study_of("study_batch")))) {
     if (line.starts_with("```")) in_block = !in_block;
     const bool command = !in_block && line.starts_with("    ") && !line.starts_with("    ./run");
     if (command && line.find("--render") == std::string::npos) commands += line.substr(4) + "\n";

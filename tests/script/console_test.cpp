@@ -183,7 +183,7 @@ TEST_F(Console, CompletesGlobalsMembersAndMethods) {
   EXPECT_EQ(completions("arm."),
             "alive angular_momentum angular_velocity asleep behaviors can_sleep center_of_mass enabled excluded_pairs "
             "gravity_factor joints kinetic_energy linear_velocity mass momentum motion motors name parts position "
-            "potential_energy root rotation self_collision sensors");
+            "potential_energy root rotation self_collision sensors tendons");
   EXPECT_EQ(completions("arm:mo"), "motor motors");
   EXPECT_EQ(completions("params.w"), "warmth wind");
   EXPECT_EQ(completions("state."), "hits");

@@ -40,6 +40,31 @@ TEST(Allocation, TicksDoNotAllocate) {
   EXPECT_GT(before, 100u);  // the counter works
 }
 
+TEST(Allocation, TendonsAllocateNothingInATick) {
+  WorldFixture s;
+  Body& body = s.body("mobile");
+  s.set(body.id(), "self_collision", {0});
+  std::vector<Tendon::Point> points;
+  for (int i = 0; i < 8; i++)
+    points.push_back(
+        {&s.part(body, sphere_model(0.1), i == 0 ? 0 : 1, {{1.0 * i, 0, 0}, quat_identity()}), {0, 0, 0.1}});
+  Tendon& tendon = *s.world.tendons().add(body, "tendon", std::move(points)).value();
+  const auto tick = [&](int i) {
+    s.set(tendon.id(), "tension", {1.0 + i % 3});
+    s.world.step();
+  };
+  for (int i = 0; i < 30; i++) tick(i);
+  const Property& tension = Tendon::table().at("tension");
+  const std::size_t before = allocations();
+  for (int i = 0; i < 30; i++) {
+    const double value = 1.0 + i % 3;
+    (void)s.store.set(tendon.id(), tension, {&value, 1});
+    s.world.step();
+  }
+  EXPECT_EQ(allocations() - before, 0u);
+  EXPECT_GT(s.number(tendon.id(), "force"), 0.5);
+}
+
 std::size_t used_memory() { return mallinfo2().uordblks + mallinfo2().hblkhd; }
 
 // Memory of a link with a joint in a bare Bullet world.

@@ -70,6 +70,53 @@ void armature() {
   }
 }
 
+// A box on a ball joint with a vertical axis, which a torque turns.
+struct TurnedBall : WorldFixture {
+  TurnedBall()
+      : robot(body("robot")),
+        base(part(robot, sphere_model(0.05), 0)),
+        child(part(robot, box_model({0.4, 0.6, 0.5}), 2)),
+        joint(*robot.add_joint("joint", base, child, model::JointType::spherical, Vec3(0), Vec3(0, 0, 1)).value()) {}
+  // Sets a limit, and returns a readout after two seconds of a torque.
+  double after_torque(const char* property, double value, const Vec3& torque, const char* readout) {
+    set(joint.id(), property, {value});
+    for (int i = 0; i < 120; i++) {
+      child.apply_torque(torque);
+      world.step();
+    }
+    return number(joint.id(), readout);
+  }
+  Body& robot;
+  Part& base;
+  Part& child;
+  Joint& joint;
+};
+
+// A torque across the axis swings the box to its cone.
+void cone_limit() {
+  for (const double cone : {0.2, 1.3})
+    EXPECT_NEAR(TurnedBall().after_torque("cone_limit", cone, {1, 0, 0}, "swing"), cone, 1e-3);
+  EXPECT_GT(TurnedBall().after_torque("cone_limit", kPi, {0.1, 0, 0}, "swing"), 1.5);
+}
+
+// A torque about the axis twists the box to its limit.
+void twist(bool upper) {
+  for (const double limit : {-0.4, 0.7}) {
+    TurnedBall ball;
+    ball.set(ball.joint.id(), upper ? "twist_lower" : "twist_upper", {upper ? -1.0 : 1.0});
+    const Vec3 torque(0, 0, upper ? 1 : -1);
+    EXPECT_NEAR(ball.after_torque(upper ? "twist_upper" : "twist_lower", limit, torque, "twist"), limit, 1e-3);
+  }
+}
+
+// A torque about any axis turns the box up to the limit.
+void rotation_limit() {
+  for (const double limit : {0.5, 2.0}) {
+    EXPECT_NEAR(TurnedBall().after_torque("rotation_limit", limit, {1, 0, 0}, "swing"), limit, 1e-3);
+    EXPECT_NEAR(TurnedBall().after_torque("rotation_limit", limit, {0, 0, 1}, "twist"), limit, 1e-3);
+  }
+}
+
 }  // namespace
 
 void add_joint_effects(PropertyEffects& effects) {
@@ -81,6 +128,10 @@ void add_joint_effects(PropertyEffects& effects) {
     effects[{"Joint", side + "stop_cfm"}] = [=] { stop_cfm(linear); };
   }
   effects[{"Joint", "armature"}] = armature;
+  effects[{"Joint", "cone_limit"}] = cone_limit;
+  effects[{"Joint", "twist_lower"}] = [] { twist(false); };
+  effects[{"Joint", "twist_upper"}] = [] { twist(true); };
+  effects[{"Joint", "rotation_limit"}] = rotation_limit;
 }
 
 }  // namespace limber::sim::test

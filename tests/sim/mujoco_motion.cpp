@@ -27,23 +27,26 @@ constexpr double kMaxOwnChange = 1.3e-3;  // m
 using MujocoModel = std::unique_ptr<mjModel, decltype(&mj_deleteModel)>;
 using MujocoData = std::unique_ptr<mjData, decltype(&mj_deleteData)>;
 
-// Leaves gravity as the only force.
-void leave_gravity(mjModel& m) {
+// Leaves gravity, and the springs of tendons.
+void leave_gravity(mjModel& m, bool with_tendons) {
   m.opt.timestep = kMotionStep;
   m.opt.integrator = mjINT_EULER;
-  m.opt.disableflags |=
-      mjDSBL_CONTACT | mjDSBL_ACTUATION | mjDSBL_PASSIVE | mjDSBL_FRICTIONLOSS | mjDSBL_LIMIT | mjDSBL_EQUALITY;
+  m.opt.disableflags |= mjDSBL_CONTACT | mjDSBL_ACTUATION | mjDSBL_FRICTIONLOSS | mjDSBL_LIMIT | mjDSBL_EQUALITY;
+  if (!with_tendons) m.opt.disableflags |= mjDSBL_PASSIVE;
+  std::fill(m.jnt_stiffness, m.jnt_stiffness + m.njnt, 0.0);
   std::fill(m.dof_armature, m.dof_armature + m.nv, 0.0);
   std::fill(m.dof_damping, m.dof_damping + m.nv, 0.0);  // its integrator adds it to the inertia in any case
   if ((m.opt.disableflags & mjDSBL_GRAVITY) != 0) std::fill(m.opt.gravity, m.opt.gravity + 3, 0.0);
 }
 
-void leave_gravity(model::BodyModel& model) {
+void leave_gravity(model::BodyModel& model, bool with_tendons) {
   model.loops.clear();
+  if (!with_tendons) model.tendons.clear();
   for (model::LinkModel& link : model.links) link.collisions.clear();
   for (model::JointModel& joint : model.joints) {
     joint.limited = false;
     joint.damping = joint.friction = joint.armature = joint.spring.stiffness = 0;
+    joint.ball = {};
     joint.mimic = -1;
   }
 }
@@ -55,6 +58,7 @@ bool has_value(const mjModel& m, int joint) {
 /// The bodies of a file, as parts of a world.
 struct Copy {
   WorldFixture fixture;
+  bool with_tendons = false;
   std::vector<std::pair<int, const Part*>> parts;  ///< MuJoCo's index of a body, and its part.
 
   /// Adds the tree of a top-level body, and sets MuJoCo's start pose to that of the tree; returns the reason if this
@@ -76,7 +80,7 @@ struct Copy {
     if (std::abs(mass - m.body_subtreemass[top]) > 1e-3 * m.body_subtreemass[top])
       return fmt::format("'{}' has a mass of {:.6g} kg, not {:.6g} kg", options.root, mass, m.body_subtreemass[top]);
     set_start(*model, m, d, top);
-    leave_gravity(*model);
+    leave_gravity(*model, with_tendons);
     BuildOptions build;
     build.servo_motors = false;
     const Result<Body*> body = fixture.world.add_body(model, options.root, build);
@@ -142,7 +146,7 @@ void run(mjModel& m, mjData& d, mjData& fine, Copy& copy, MotionComparison& out)
 
 }  // namespace
 
-MotionComparison compare_motion_with_mujoco(const std::string& path) {
+MotionComparison compare_motion_with_mujoco(const std::string& path, bool with_tendons) {
   MotionComparison out;
   char error[1000] = "";
   const MujocoModel m(mj_loadXML(path.c_str(), nullptr, error, sizeof error), mj_deleteModel);
@@ -150,9 +154,10 @@ MotionComparison compare_motion_with_mujoco(const std::string& path) {
     out.left_out = *error != '\0' ? error : "it can't be read";
     return out;
   }
-  leave_gravity(*m);
+  leave_gravity(*m, with_tendons);
   const MujocoData d(mj_makeData(m.get()), mj_deleteData);
   Copy copy;
+  copy.with_tendons = with_tendons;
   copy.fixture.set(copy.fixture.world.id(), "gravity", {m->opt.gravity[0], m->opt.gravity[1], m->opt.gravity[2]});
   copy.fixture.set(copy.fixture.world.id(), "timestep", {kMotionStep});
   copy.fixture.set(copy.fixture.world.id(), "substeps", {1});

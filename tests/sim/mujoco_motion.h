@@ -17,6 +17,7 @@ struct MotionComparison {
 /// equalities and armature, in steps of 0.5 ms. It starts where its hinges and slides are 0.2 (as far as their limits
 /// allow) away from home. The comparison ends where a tenth of the step changes MuJoCo's own motion by more than 1.3 mm
 /// (in free fall: by 1.1 mm), since it depends on rounding from there on.
-MotionComparison compare_motion_with_mujoco(const std::string& path);
+/// `with_tendons`: with the springs and dampers of tendons.
+MotionComparison compare_motion_with_mujoco(const std::string& path, bool with_tendons = false);
 
 }  // namespace limber::sim::test

@@ -19,12 +19,13 @@ struct NamedTable {
   const PropertyTable* table;
 };
 
-std::array<NamedTable, 10> tables() {
-  return {NamedTable{"World", &World::table()}, NamedTable{"Body", &Body::table()},
-          NamedTable{"Part", &Part::table()},   NamedTable{"Joint", &Joint::table()},
-          NamedTable{"Motor", &Motor::table()}, NamedTable{"Gear", &Gear::table()},
-          NamedTable{"Imu", &imu_table()},      NamedTable{"RangeFinder", &range_finder_table()},
-          NamedTable{"Zone", &zone_table()},    NamedTable{"Touch", &touch_table()}};
+std::array<NamedTable, 11> tables() {
+  return {NamedTable{"World", &World::table()},  NamedTable{"Body", &Body::table()},
+          NamedTable{"Part", &Part::table()},    NamedTable{"Joint", &Joint::table()},
+          NamedTable{"Motor", &Motor::table()},  NamedTable{"Gear", &Gear::table()},
+          NamedTable{"Imu", &imu_table()},       NamedTable{"RangeFinder", &range_finder_table()},
+          NamedTable{"Zone", &zone_table()},     NamedTable{"Touch", &touch_table()},
+          NamedTable{"Tendon", &Tendon::table()}};
 }
 
 TEST(Properties, HaveMeasuredEffects) {
@@ -58,8 +59,8 @@ std::string key_name(const testing::TestParamInfo<PropertyKey>& info) {
 
 INSTANTIATE_TEST_SUITE_P(Property, Effect, testing::ValuesIn(all_keys()), key_name);
 
-// A floor, and a robot with two revolute joints, a gear between them, and a floating joint: at least one object of each
-// class.
+// A floor, and a robot with two revolute joints, a gear and a tendon between them, and a floating joint: at least one
+// object of each class.
 struct AllClasses : WorldFixture {
   AllClasses() {
     floor();
@@ -78,7 +79,8 @@ struct AllClasses : WorldFixture {
              robot.add_motor(hinge).value()->id(),
              string.id(),
              robot.add_motor(string).value()->id(),
-             world.gears().add("gear", hinge, side, 2).value()->id()};
+             world.gears().add("gear", hinge, side, 2).value()->id(),
+             world.tendons().add(robot, "tendon", {{&arm, {}}, {&wing, {}}}).value()->id()};
     for (const SensorKind kind : kSensorKinds)
       nodes.push_back(robot.sensors().add(Sensor::kind_name(kind), kind, kite).value()->id());
     world.flush();

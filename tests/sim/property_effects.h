@@ -1,5 +1,5 @@
 // The registry of the effects of properties: one measuring function per property of World, Body, Part, Joint, Motor,
-// Gear and the kinds of sensors.
+// Gear, Tendon and the kinds of sensors.
 #pragma once
 
 #include <functional>
@@ -18,6 +18,7 @@ void add_part_effects(PropertyEffects& effects);
 void add_joint_effects(PropertyEffects& effects);
 void add_motor_effects(PropertyEffects& effects);
 void add_gear_effects(PropertyEffects& effects);
+void add_tendon_effects(PropertyEffects& effects);
 void add_sensor_effects(PropertyEffects& effects);
 
 inline const PropertyEffects& all_property_effects() {
@@ -29,6 +30,7 @@ inline const PropertyEffects& all_property_effects() {
     add_joint_effects(effects);
     add_motor_effects(effects);
     add_gear_effects(effects);
+    add_tendon_effects(effects);
     add_sensor_effects(effects);
     return effects;
   }();

@@ -8,6 +8,7 @@
 #include "sim/state/body_trees.h"
 #include "sim/state/rebuild.h"
 #include "sim/state/state_hash.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"

@@ -91,6 +91,35 @@ void add_log(CLI::App& play, LogOptions& o) {
   play.add_flag("--quiet", o.quiet, "Print only warnings and errors to standard error.");
 }
 
+// Adds the options of the length of a run and of its threads.
+void add_run_options(CLI::App& play, PlayOptions& o) {
+  play.add_option("--duration,--seconds", o.duration, "End at this simulated time.")
+      ->type_name("S")
+      ->check(positive_time());
+  play.add_option("--ticks", o.ticks, "End after this number of ticks.")->type_name("N")->check(plain_count());
+  play.add_option("--threads", o.threads,
+                  "Number of threads for physics and readouts, default 1; the result is identical for any number.")
+      ->type_name("N")
+      ->check(CLI::Range(1, ThreadPool::kMaxThreads));
+}
+
+// Adds the options of models. Returns --save-scene.
+CLI::Option* add_model_options(CLI::App& play, PlayOptions& o) {
+  play.add_option("--package-path", o.package_paths, "Folder for package:// paths in URDF files; may be repeated.")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  play.add_option("--root", o.root,
+                  "With an MJCF model: the top-level body to play, or world; default: the first that moves.")
+      ->type_name("BODY");
+  CLI::Option* const save_scene =
+      play.add_option("--save-scene", o.save_scene.file,
+                      "Write the scene of the model to this file, with comments to start from, and exit.")
+          ->type_name("FILE.lua");
+  play.add_flag("--overwrite", o.save_scene.overwrite, "With --save-scene: replace an existing file.")
+      ->needs(save_scene);
+  return save_scene;
+}
+
 }  // namespace
 
 void add_play_options(CLI::App& command, PlayOptions& o) {
@@ -109,17 +138,10 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
       play->add_flag("--lockstep", o.lockstep,
                      "Advance only by /transport/step, as fast as it is sent; each is answered by /transport/stepped.")
           ->excludes(fast);
-  play->add_option("--duration,--seconds", o.duration, "End at this simulated time.")
-      ->type_name("S")
-      ->check(positive_time());
-  play->add_option("--ticks", o.ticks, "End after this number of ticks.")->type_name("N")->check(plain_count());
+  add_run_options(*play, o);
   CLI::Option* seed = play->add_option("--seed", o.seed, "Seed of the random numbers; overrides sim.seed of the scene.")
                           ->type_name("N")
                           ->check(plain_count());
-  play->add_option("--threads", o.threads,
-                   "Number of threads for physics and readouts, default 1; the result is identical for any number.")
-      ->type_name("N")
-      ->check(CLI::Range(1, ThreadPool::kMaxThreads));
   CLI::Option* sets =
       play->add_option(
               "--set", o.sets,
@@ -130,18 +152,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
       play->add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
           ->type_name("NAME");
   add_network(*play, o.network);
-  play->add_option("--package-path", o.package_paths, "Folder for package:// paths in URDF files; may be repeated.")
-      ->type_name("DIR")
-      ->allow_extra_args(false);
-  play->add_option("--root", o.root,
-                   "With an MJCF model: the top-level body to play, or world; default: the first that moves.")
-      ->type_name("BODY");
-  CLI::Option* save_scene =
-      play->add_option("--save-scene", o.save_scene.file,
-                       "Write the scene of the model to this file, with comments to start from, and exit.")
-          ->type_name("FILE.lua");
-  play->add_flag("--overwrite", o.save_scene.overwrite, "With --save-scene: replace an existing file.")
-      ->needs(save_scene);
+  CLI::Option* const save_scene = add_model_options(*play, o);
   play->add_flag("--watch", o.watch,
                  "With --fast: reload the scene when one of its files is saved, as is done in real time.");
   CLI::Option* record =

@@ -19,6 +19,7 @@
 #include "sim/gears/gear.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
+#include "sim/tendons/tendon.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -69,9 +70,10 @@ constexpr const char* kHeader = "address\tlegacy address\tkind\ttype\tunit\trang
 }  // namespace
 
 std::vector<const PropertyTable*> described_classes() {
-  std::vector<const PropertyTable*> all = {
-      &sim::World::table(), &sim::Body::table(), &sim::Part::table(),        &sim::Joint::table(), &sim::Motor::table(),
-      &sim::Gear::table(),  &sim::imu_table(),   &sim::range_finder_table(), &sim::zone_table(),   &sim::touch_table()};
+  std::vector<const PropertyTable*> all = {&sim::World::table(), &sim::Body::table(),        &sim::Part::table(),
+                                           &sim::Joint::table(), &sim::Motor::table(),       &sim::Gear::table(),
+                                           &sim::imu_table(),    &sim::range_finder_table(), &sim::zone_table(),
+                                           &sim::touch_table(),  &sim::Tendon::table()};
   const sim::BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);

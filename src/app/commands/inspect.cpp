@@ -20,6 +20,7 @@
 #include "base/plural.h"
 #include "base/text.h"
 #include "model/import.h"
+#include "model/mesh/surface.h"
 
 namespace limber::app {
 
@@ -148,6 +149,10 @@ void add_body(const model::BodyModel& model, std::string& out) {
   for (const model::LinkModel& link : model.links) {
     out += fmt::format("  {}: {:.6g} kg", printable(link.name), link.inertial.mass);
     for (const model::PlacedShape& s : link.collisions) {
+      if (s.shape.surface != nullptr) {
+        out += fmt::format(", surface of {}", counted(s.shape.surface->size(), "triangle"));
+        continue;
+      }
       out += fmt::format(", {}", kind_name(s.shape.kind));
       if (s.shape.kind != model::ShapeKind::mesh || !s.shape.mesh) continue;
       out += fmt::format(" of {} (farthest vertex {:.2g} m outside)", counted(s.shape.mesh->hull.size(), "point"),

@@ -143,7 +143,7 @@ fs::path temporary_folder() {
   std::error_code error;
   const fs::path parent = fs::temp_directory_path(error);
   for (int i = 0; i < 100 && !error; i++) {
-    const fs::path folder = parent / fmt::format("limber-models-{}-{}", system::process_id(), i);
+    fs::path folder = parent / fmt::format("limber-models-{}-{}", system::process_id(), i);
     if (fs::create_directory(folder, error)) return folder;
   }
   return {};

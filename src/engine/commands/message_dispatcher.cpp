@@ -44,6 +44,7 @@ constexpr SpecialAddress kSpecialAddresses[] = {
     {"/list/joints", "body", "Answers with the body and the names of its joints, in stream order."},
     {"/list/motors", "body", "Answers with the body and the names of its motors."},
     {"/list/sensors", "body", "Answers with the body and the names of its sensors."},
+    {"/list/tendons", "body", "Answers with the body and the names of its tendons."},
     {"/list/behaviors", "body", "Answers with the body and the names of its behaviors, in execution order."},
     {"/list/gears", "", "Answers with the names of the gears."},
     {"/list/groups", "", "Answers with the names of the group behaviors."},

@@ -10,6 +10,7 @@
 #include "base/color.h"
 #include "engine/output/snapshot.h"
 #include "sim/shapes/shape_list.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/part.h"
@@ -114,6 +115,22 @@ RenderScene::RenderScene(const sim::World& world) {
       tint += kTintWidth;
     }
   }
+  add_tendons(world, tint);
+}
+
+// `offset`: index of the first radius in Snapshot::visuals
+void RenderScene::add_tendons(const sim::World& world, std::uint32_t offset) {
+  const StoreView& view = *world.store().view();
+  const PropertyTable& table = sim::Tendon::table();
+  for (const auto& tendon : world.tendons().list()) {
+    RenderTendon& out = tendons.emplace_back();
+    for (const sim::Tendon::Point& point : tendon->points())
+      out.points.push_back({view.slots[point.part->id().slot].transient, point.position});
+    out.enabled_offset = view.slots[tendon->body().id().slot].transient + at(sim::Body::table(), "enabled");
+    out.force_offset = view.slots[tendon->id().slot].transient + at(table, "force");
+    out.radius = offset++;
+    blocks_.push_back({view.slots[tendon->id().slot].persistent + at(table, "radius"), 1});
+  }
 }
 
 void RenderScene::copy_visuals(std::span<const double> persistent, std::vector<double>& to) const {
@@ -155,6 +172,8 @@ Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance) {
   // the default is exactly white
   return {hsb == Vec3(0, 0, 1) ? Vec3(1) : rgb_of(hsb), v[kTintWidth - 1]};
 }
+
+double radius_of(const Snapshot& snapshot, const RenderTendon& tendon) { return snapshot.visuals[tendon.radius]; }
 
 CameraSettings camera_of(const Snapshot& snapshot) {
   static const PropertyTable& table = sim::Camera::table();

@@ -32,15 +32,28 @@ struct RenderInstance {
   std::uint32_t tint = 0;  ///< For tint_of().
 };
 
+/// A tendon, drawn as a line through its points.
+struct RenderTendon {
+  struct Point {
+    std::uint32_t part_offset = 0;  ///< Index of the part's block in Snapshot::transient.
+    Vec3 position{0};               ///< In the part's link frame.
+  };
+  std::vector<Point> points;
+  std::uint32_t enabled_offset = 0;  ///< Index of its body's `enabled` (1 or 0) in Snapshot::transient.
+  std::uint32_t force_offset = 0;    ///< Index of its `force` there, N.
+  std::uint32_t radius = 0;          ///< For radius_of().
+};
+
 /// Rebuilt only when bodies or shapes are added, removed or changed; shared by the snapshots in between.
 struct RenderScene {
   explicit RenderScene(const sim::World& world);  ///< [sim]
 
   std::vector<RenderShape> shapes;
   std::vector<RenderInstance> instances;
+  std::vector<RenderTendon> tendons;
 
-  /// Copies the persistent values of visuals, camera, look, materials and tints to Snapshot::visuals. Allocates only if
-  /// they have grown. [sim]
+  /// Copies the persistent values of visuals, camera, look, materials, tints and radii of tendons to Snapshot::visuals.
+  /// Allocates only if they have grown. [sim]
   void copy_visuals(std::span<const double> persistent, std::vector<double>& to) const;
 
  private:
@@ -48,7 +61,9 @@ struct RenderScene {
     std::uint32_t offset = 0;  // index in the persistent values
     std::uint32_t width = 0;
   };
-  std::vector<Block> blocks_;  // visuals, camera, look, materials, then the tints of parts
+  void add_tendons(const sim::World& world, std::uint32_t offset);
+
+  std::vector<Block> blocks_;  // visuals, camera, look, materials, the tints of parts, then the radii of tendons
 };
 
 /// A material. Colors are hue, saturation, brightness.
@@ -69,6 +84,9 @@ struct Tint {
   double transparency = 0;
 };
 Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance);
+
+/// Radius of a tendon, m.
+double radius_of(const Snapshot& snapshot, const RenderTendon& tendon);
 
 /// The camera. The view matrix is T(position)·Rx·Ry·Rz, with rotations in degrees.
 struct CameraSettings {

@@ -20,8 +20,8 @@ bool same_mesh(const std::shared_ptr<const model::MeshModel>& a, const std::shar
 
 bool same_geometry(const model::ShapeModel& a, const model::ShapeModel& b) {
   return a.kind == b.kind && a.normal == b.normal && a.size == b.size && a.radius == b.radius && a.height == b.height &&
-         same_mesh(a.mesh, b.mesh) && nearly_same(a.mesh_pose, b.mesh_pose) && a.mesh_colors == b.mesh_colors &&
-         same_image(a.texture, b.texture);
+         same_mesh(a.mesh, b.mesh) && (a.surface == nullptr) == (b.surface == nullptr) &&
+         nearly_same(a.mesh_pose, b.mesh_pose) && a.mesh_colors == b.mesh_colors && same_image(a.texture, b.texture);
 }
 
 bool same_geometry(const ShapeDescription& a, const ShapeDescription& b) {
@@ -274,10 +274,11 @@ bool SceneDiff::empty() const {
   const bool same_values = (world | visuals | camera | appearance) == 0;
   const bool same_objects =
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
-  const bool none_removed = removed_shapes.empty() && removed_bodies.empty() && removed_behaviors.empty() &&
-                            removed_groups.empty() && removed_gears.empty();
+  const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
+  const bool none_removed =
+      all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears, removed_tendons);
   return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears) &&
-         std::ranges::all_of(behaviors, all_empty);
+         all_empty(tendons) && std::ranges::all_of(behaviors, all_empty);
 }
 
 std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
@@ -356,6 +357,24 @@ void compare_gears(const SceneSpec& before, const SceneSpec& now, SceneDiff& out
   }
 }
 
+const TendonDescription* find_tendon(const SceneSpec& spec, const TendonDescription& wanted) {
+  const auto found = std::ranges::find_if(spec.tendons, [&](const TendonDescription& tendon) {
+    return tendon.body == wanted.body && tendon.name == wanted.name;
+  });
+  return found == spec.tendons.end() ? nullptr : &*found;
+}
+
+void compare_tendons(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
+  for (const TendonDescription& tendon : now.tendons) {
+    const TendonDescription* const old_tendon = find_tendon(before, tendon);
+    out.tendons.push_back({old_tendon != nullptr, old_tendon != nullptr && old_tendon->points == tendon.points,
+                           mask_to_set(old_tendon == nullptr ? nullptr : &old_tendon->values, tendon.values)});
+  }
+  for (const TendonDescription& old_tendon : before.tendons) {
+    if (find_tendon(now, old_tendon) == nullptr) out.removed_tendons.emplace_back(old_tendon.body, old_tendon.name);
+  }
+}
+
 }  // namespace
 
 SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
@@ -383,6 +402,7 @@ SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
     if (!diff.empty()) out.bodies.push_back(std::move(diff));
   }
   compare_gears(before, now, out);
+  compare_tendons(before, now, out);
   compare_behaviors(before, now, out);
   return out;
 }

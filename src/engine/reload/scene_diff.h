@@ -54,6 +54,15 @@ struct GearDiff {
   bool empty() const { return in_old_spec && same_joints && changed == 0; }
 };
 
+/// Changes of a tendon. One through other points is rebuilt.
+struct TendonDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool same_points = true;    ///< It goes through the same points.
+  std::uint64_t changed = 0;  ///< Properties to set.
+
+  bool empty() const { return in_old_spec && same_points && changed == 0; }
+};
+
 struct SceneDiff {
   std::uint64_t world = 0;                                    ///< Properties of the world to set.
   std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
@@ -72,7 +81,10 @@ struct SceneDiff {
   std::vector<std::string> removed_groups;  ///< Removed groups.
   std::vector<GearDiff> gears;              ///< For each new gear.
   std::vector<std::string> removed_gears;   ///< Removed gears.
-  bool order_changed = false;               ///< The order of the behaviors differs.
+  std::vector<TendonDiff> tendons;          ///< For each new tendon.
+  /// Removed tendons, by the names of their bodies and their own.
+  std::vector<std::pair<std::string, std::string>> removed_tendons;
+  bool order_changed = false;  ///< The order of the behaviors differs.
 
   bool empty() const;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "base/check.h"
 #include "engine/reload/behavior_patch.h"
@@ -11,6 +12,7 @@
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
 #include "sim/state/rebuild.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -107,6 +109,7 @@ class PatchApplier {
     apply_shapes(objects);
     apply_bodies(objects);
     apply_gears();
+    apply_tendons();
     apply_behaviors(patch_, bodies_, saved_behaviors_);
     for (const std::size_t removed : patch_.diff.removed_shapes) {
       if (sim::Shape* const shape = find_alive<sim::Shape>(patch_.world, objects.shapes[removed]))
@@ -210,11 +213,55 @@ class PatchApplier {
     patch_.world.gears().move_to_front(order);
   }
 
-  sim::Joint* joint_of(const std::string& body, const std::string& joint) const {
-    for (sim::Body* const candidate : bodies_) {
-      if (candidate->name() == body) return candidate->find_joint(joint);
+  // The same for tendons; one through other points is made again.
+  void apply_tendons() {
+    sim::TendonList& tendons = patch_.world.tendons();
+    for (const auto& [body, name] : patch_.diff.removed_tendons) {
+      const sim::Body* const owner = body_named(body);
+      if (sim::Tendon* const removed = owner == nullptr ? nullptr : tendons.find(*owner, name))
+        tendons.remove(*removed);
     }
-    return nullptr;
+    std::vector<sim::Tendon*> order;
+    for (std::size_t i = 0; i < patch_.now.tendons.size(); i++) {
+      const TendonDescription& now = patch_.now.tendons[i];
+      const NodeId source = patch_.candidate.tendons().list()[i]->id();
+      sim::Body& body = *body_named(now.body);
+      std::vector<sim::Tendon::Point> points;
+      for (const TendonDescription::Point& point : now.points)
+        points.push_back({body_named(point.body)->find_part(point.part), point.position});
+      sim::Tendon* live = tendons.find(body, now.name);
+      if (live != nullptr && !same_points(*live, points)) {
+        tendons.remove(*live);
+        live = nullptr;
+      }
+      if (live == nullptr) {
+        const Result<sim::Tendon*> added = tendons.add(body, now.name, std::move(points));
+        LIMBER_CHECK(added.ok());
+        live = *added;
+        set_properties(source, live->id(), described_mask(sim::Tendon::table()));
+      } else {
+        set_properties(source, live->id(), patch_.diff.tendons[i].changed);
+      }
+      order.push_back(live);
+    }
+    tendons.move_to_front(order);
+  }
+
+  static bool same_points(const sim::Tendon& tendon, const std::vector<sim::Tendon::Point>& points) {
+    return std::equal(points.begin(), points.end(), tendon.points().begin(), tendon.points().end(),
+                      [](const sim::Tendon::Point& a, const sim::Tendon::Point& b) {
+                        return a.part == b.part && a.position == b.position;
+                      });
+  }
+
+  sim::Body* body_named(const std::string& name) const {
+    const auto found = std::ranges::find_if(bodies_, [&](const sim::Body* body) { return body->name() == name; });
+    return found == bodies_.end() ? nullptr : *found;
+  }
+
+  sim::Joint* joint_of(const std::string& body, const std::string& joint) const {
+    const sim::Body* const found = body_named(body);
+    return found == nullptr ? nullptr : found->find_joint(joint);
   }
 
   // Adds a body that is new or was removed, or adopts an unmanaged body of this name.

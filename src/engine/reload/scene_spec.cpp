@@ -8,6 +8,7 @@
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -158,6 +159,14 @@ SceneSpec describe(const sim::World& world) {
     const sim::Joint& b = gear->joint_b();
     out.gears.push_back({gear->name(), a.body().name(), a.name(), b.body().name(), b.name(),
                          spec_values_of(world.store(), gear->id())});
+  }
+  for (const auto& tendon : world.tendons().list()) {
+    TendonDescription& description = out.tendons.emplace_back();
+    description.body = tendon->body().name();
+    description.name = tendon->name();
+    for (const sim::Tendon::Point& point : tendon->points())
+      description.points.push_back({point.part->body().name(), point.part->name(), point.position});
+    description.values = spec_values_of(world.store(), tendon->id());
   }
   for (const sim::BehaviorGroup* group : world.behaviors().groups()) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),

@@ -91,6 +91,17 @@ struct GearDescription {
   std::string body_b, joint_b;
   SpecValues values;
 };
+struct TendonDescription {
+  struct Point {
+    std::string body, part;
+    Vec3 position{0};
+    bool operator==(const Point&) const = default;
+  };
+  std::string body;  ///< Its owner.
+  std::string name;
+  std::vector<Point> points;
+  SpecValues values;
+};
 struct BodyDescription {
   std::string name;
   SpecValues values;
@@ -111,6 +122,7 @@ struct SceneSpec {
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
   std::vector<GearDescription> gears;
+  std::vector<TendonDescription> tendons;
   std::vector<GroupDescription> groups;
   std::vector<std::string> behavior_order;  ///< BehaviorOrder::keys()
 };

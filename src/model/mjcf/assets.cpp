@@ -53,27 +53,29 @@ Result<std::shared_ptr<const MeshModel>> mesh_of_points(std::span<const Vec3> po
   return mesh_from_bytes(text, MeshFormat::obj, Vec3(1), name);
 }
 
-std::string asset_path(const MjcfCompiler& compiler, const std::string& folder, const std::string& file) {
+}  // namespace
+
+std::string mjcf_asset_path(const MjcfCompiler& compiler, const std::string& folder, const std::string& file) {
   const std::filesystem::path path(file);
   const std::filesystem::path inner = compiler.strip_path ? path.filename() : path;
   return (std::filesystem::path(folder) / inner).lexically_normal().string();
 }
 
-}  // namespace
-
 void MjcfFileReader::read_assets(const MjcfElement& element) {
   for (const MjcfElement& e : element.children) {
-    if (meshes_.size() + materials_.size() + textures_.size() > kMaxAssets) return;
+    if (meshes_.size() + heightfields_.size() + materials_.size() + textures_.size() > kMaxAssets) return;
     if (e.name == "mesh") {
       read_mesh(e);
     } else if (e.name == "material") {
       read_material(e);
+    } else if (e.name == "hfield") {
+      heightfields_.read(reader_, e);
     } else if (e.name == "texture") {
       read_texture(e);
     } else {
       constexpr std::array<std::string_view, 6> kAssets{"mesh", "material", "texture", "hfield", "skin", "model"};
       reader_.unknown(e, fmt::format("<{}> in <asset> ignored: it is not supported", printable_excerpt(e.name)),
-                      kAssets, "Use <mesh> and <material>.");
+                      kAssets, "Use <mesh>, <hfield> and <material>.");
     }
   }
 }
@@ -107,7 +109,7 @@ void MjcfFileReader::read_mesh(const MjcfElement& element) {
   }
   if (const std::string* file = reader_.text(element, cls, "file")) {
     if (name.empty()) name = std::filesystem::path(*file).stem().string();
-    asset.uri = asset_path(reader_.compiler, reader_.compiler.mesh_folder, *file);
+    asset.uri = mjcf_asset_path(reader_.compiler, reader_.compiler.mesh_folder, *file);
   } else {
     read_inline_mesh(element, cls, asset);
   }
@@ -159,12 +161,12 @@ void MjcfFileReader::read_texture(const MjcfElement& element) {
     reader_.unsupported(element,
                         sky ? "<texture type='skybox'> ignored: the scene sets the background"
                             : "<texture> without a file ignored: its shapes have plain colors",
-                        "Write rgba for the material.");
+                        sky ? "Set visuals.look in the scene." : "Write rgba for the material.");
     return;
   }
   std::string name = reader_.name(element);
   if (name.empty()) name = std::filesystem::path(*file).stem().string();
-  textures_.try_emplace(name, asset_path(reader_.compiler, reader_.compiler.texture_folder, *file));
+  textures_.try_emplace(name, mjcf_asset_path(reader_.compiler, reader_.compiler.texture_folder, *file));
 }
 
 }  // namespace limber::model

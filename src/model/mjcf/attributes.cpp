@@ -32,7 +32,9 @@ constexpr std::string_view kActuatorIgnored =
     "actdim actearly dampratio timeconst inheritrange timelimit plugin area diameter bias lmin lmax vmax fpmax "
     "fvmax force scale range gain nsample interp delay";
 
-constexpr std::array<ElementAttributes, 22> kElements{{
+constexpr std::string_view kSensorIgnored = "cutoff noise user nsample interp delay interval data";
+
+constexpr std::array<ElementAttributes, 29> kElements{{
     {"compiler",
      "angle eulerseq meshdir assetdir autolimits coordinate inertiafromgeom inertiagrouprange boundmass boundinertia "
      "balanceinertia settotalmass strippath texturedir",
@@ -49,10 +51,11 @@ constexpr std::array<ElementAttributes, 22> kElements{{
      "name class type pos quat axisangle euler xyaxes zaxis fromto size mass density contype conaffinity group rgba "
      "material mesh hfield",
      "condim priority friction solmix solref solimp margin gap user shellinertia fitscale fluidshape fluidcoef"},
-    {"site", "name class pos quat axisangle euler xyaxes zaxis fromto", "type size group material rgba user"},
+    {"site", "name class pos quat axisangle euler xyaxes zaxis fromto size", "type group material rgba user"},
     {"mesh", "name class file scale refpos refquat vertex face",
      "normal texcoord smoothnormal maxhullvert inertia "
      "content_type builtin params material"},
+    {"hfield", "name file nrow ncol size elevation", "content_type"},
     {"material", "name class rgba texture",
      "texrepeat texuniform emission specular shininess reflectance metallic "
      "roughness"},
@@ -64,12 +67,20 @@ constexpr std::array<ElementAttributes, 22> kElements{{
      "group springlength solreflimit solimplimit solreffriction solimpfriction margin width material rgba user "
      "armature actuatorfrclimited actuatorfrcrange"},
     {"joint of a tendon", "joint coef", ""},
+    {"spatial", "name class limited range stiffness damping frictionloss springlength width",
+     "group solreflimit solimplimit solreffriction solimpfriction margin material rgba user armature "
+     "actuatorfrclimited actuatorfrcrange"},
+    {"site of a tendon", "site", ""},
     {"general", kActuatorUsed, kActuatorIgnored},
     {"motor", kActuatorUsed, kActuatorIgnored},
     {"position", kActuatorUsed, kActuatorIgnored},
     {"velocity", kActuatorUsed, kActuatorIgnored},
     {"intvelocity", kActuatorUsed, kActuatorIgnored},
     {"damper", kActuatorUsed, kActuatorIgnored},
+    {"accelerometer", "name site", kSensorIgnored},
+    {"gyro", "name site", kSensorIgnored},
+    {"rangefinder", "name site cutoff", kSensorIgnored},
+    {"touch", "name site", kSensorIgnored},
 }};
 
 bool lists(std::string_view names, std::string_view name) {

@@ -55,6 +55,8 @@ class Converter {
       add_tree(static_cast<std::size_t>(*chosen));
     }
     convert_loops(file_, link_of_, static_cast<std::size_t>(*chosen), out_, problems_);
+    convert_tendons(file_, link_of_, static_cast<std::size_t>(*chosen), out_, problems_);
+    add_sensors();
     add_exclusions();
     report_joints();
     report_springs();
@@ -126,7 +128,7 @@ class Converter {
     if (!with_geoms) return;
     link_of_[0] = 0;
     add_geoms(0, out_.links.back());
-    for (const auto& [name, pose] : body(0).sites) add_frame(name, 0, pose);
+    for (const MjcfSite& site : body(0).sites) add_frame(site.name, 0, site.pose);
   }
 
   void add_tree(std::size_t first) {
@@ -187,7 +189,7 @@ class Converter {
     if (b.inertial.mass > 0) link.inertial = urdf_inertial(b.inertial, 1);
     add_geoms(index, link);
     out_.links.push_back(std::move(link));
-    for (const auto& [name, pose] : b.sites) add_frame(name, link_of_[index], pose);
+    for (const MjcfSite& site : b.sites) add_frame(site.name, link_of_[index], site.pose);
   }
 
   void add_connector(const MjcfBody& b, const std::string& name) {
@@ -248,8 +250,10 @@ class Converter {
     out.damping = from.damping;
     out.friction = from.friction;
     out.armature = from.armature;
+    if (from.largest_angle > 0) out.ball.angle = from.largest_angle;
     out.spring = from.driven ? from.gains : from.spring;
     out.start = from.start;
+    out.start_rotation = from.start_rotation;
     out.driven = from.driven;
     out.mimic = from.mimic;
     count(from);
@@ -274,6 +278,16 @@ class Converter {
   void add_frame(const std::string& name, int link, const Pose& pose) {
     if (!frame_names_.insert(name).second) return;
     out_.frames.push_back({name, link, pose});
+  }
+
+  // those on bodies of the tree
+  void add_sensors() {
+    for (const MjcfSensor& from : file_.sensors) {
+      const int link = link_of_[static_cast<std::size_t>(from.link)];
+      if (link < 0) continue;
+      out_.sensors.push_back(from);
+      out_.sensors.back().link = link;
+    }
   }
 
   // <exclude>, and pairs whose contact masks don't match

@@ -27,6 +27,13 @@ void set_masses(MjcfFile& file, const MjcfCompiler& compiler);
 void convert_loops(const MjcfFile& file, const std::vector<int>& link_of, std::size_t root, UrdfFile& out,
                    Problems& problems);
 
+/// The poses of all bodies in the world, with all joints at their home values. [any]
+std::vector<Pose> home_poses(const MjcfFile& file);
+
+/// Adds the tendons of the file, and reports those with a body that is not part of `out`. `link_of` as above. [any]
+void convert_tendons(const MjcfFile& file, const std::vector<int>& link_of, std::size_t root, UrdfFile& out,
+                     Problems& problems);
+
 /// Returns the links and joints of the chosen top-level body (ImportOptions::root). The error, an unknown root, starts
 /// with a line number and a colon. [any]
 Result<UrdfFile> convert_mjcf(const MjcfFile& file, const std::string& root, Problems& problems);

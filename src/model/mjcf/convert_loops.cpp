@@ -11,17 +11,12 @@
 
 namespace limber::model {
 
-namespace {
-
-/// The poses of all bodies in the world, with all joints at their home values.
 std::vector<Pose> home_poses(const MjcfFile& file) {
   std::vector<Pose> homes(file.bodies.size());
   for (std::size_t i = 1; i < homes.size(); ++i)
     homes[i] = homes[static_cast<std::size_t>(file.bodies[i].parent)] * file.bodies[i].pose;
   return homes;
 }
-
-}  // namespace
 
 void convert_loops(const MjcfFile& file, const std::vector<int>& link_of, std::size_t root, UrdfFile& out,
                    Problems& problems) {

@@ -74,8 +74,8 @@ void MjcfFileReader::read_loop(const MjcfElement& element, MjcfClass cls) {
     if (first == nullptr || second == nullptr) return;
     loop.body_1 = first->body;
     loop.body_2 = second->body;
-    loop.frame_1 = first->pose;
-    loop.frame_2 = second->pose;
+    loop.frame_1 = first->site.pose;
+    loop.frame_2 = second->site.pose;
   } else {
     loop.body_1 = body_named(element, "body1");
     loop.body_2 = element.attribute("body2") != nullptr ? body_named(element, "body2") : 0;

@@ -41,7 +41,7 @@ struct MjcfGeom {
   int group = 0;
 };
 
-struct MjcfJoint {
+struct MjcfJoint : JointDynamics {
   std::string name;
   int line = 0;
   JointType type = JointType::revolute;
@@ -51,17 +51,22 @@ struct MjcfJoint {
   double lower = 0;  ///< As MuJoCo counts: `reference` at the home pose.
   double upper = 0;
   double reference = 0;
-  double damping = 0;
-  double friction = 0;
-  double armature = 0;
+  double largest_angle = 0;   ///< Of a ball joint; 0: free.
   SpringModel spring;         ///< Its rest is 0 at the home pose.
   SpringModel gains;          ///< Of a position actuator.
   double effort = 0;          ///< Of its actuators; 0: not limited.
   double largest_effort = 0;  ///< Of all actuators together; 0: not limited.
   double velocity = 0;
-  bool driven = false;  ///< An actuator drives it.
-  double start = 0;     ///< Value at the start, 0 at the home pose.
+  bool driven = false;                    ///< An actuator drives it.
+  double start = 0;                       ///< Value at the start, 0 at the home pose.
+  Quat start_rotation = quat_identity();  ///< Of a ball joint.
   std::optional<UrdfMimic> mimic;
+};
+
+struct MjcfSite {
+  std::string name;
+  Pose pose;          ///< In the body's frame.
+  double radius = 0;  ///< Half of its largest size.
 };
 
 struct MjcfBody {
@@ -73,7 +78,7 @@ struct MjcfBody {
   bool free = false;  ///< A free joint connects it to the world.
   std::vector<MjcfJoint> joints;
   std::vector<MjcfGeom> geoms;
-  std::vector<std::pair<std::string, Pose>> sites;
+  std::vector<MjcfSite> sites;
   std::optional<UrdfInertial> declared;  ///< <inertial>
   Inertial inertial;                     ///< From `declared` or the geoms.
 };
@@ -89,11 +94,22 @@ struct MjcfLoop {
   std::optional<Pose> frame_2;  ///< In body_2; empty: that of `frame_1` in the home pose.
 };
 
+/// <spatial>
+struct MjcfTendon {
+  int line = 0;
+  TendonModel model;  ///< Its links are indices into MjcfFile::bodies; `rest` empty: the length at the home pose.
+};
+
+/// Its link is an index into MjcfFile::bodies, its pose is in that body.
+using MjcfSensor = SensorModel;
+
 struct MjcfFile {
   std::string name;
   std::vector<MjcfBody> bodies;  ///< bodies[0] is the world; parents come before their children.
   std::vector<MjcfLoop> loops;
+  std::vector<MjcfTendon> tendons;
   std::vector<std::pair<int, int>> exclusions;  ///< <contact><exclude>: indices into `bodies`.
+  std::vector<MjcfSensor> sensors;
 };
 
 }  // namespace limber::model

@@ -15,7 +15,8 @@ namespace limber::model {
 
 namespace {
 
-constexpr double kMaxMass = 1e7;  // kg
+constexpr double kMaxMass = 1e7;            // kg
+constexpr double kDefaultSiteSize = 0.005;  // m
 
 constexpr std::array<std::string_view, 18> kSections{
     "compiler",  "option",  "size",     "visual", "statistic", "default", "custom",   "extension",  "asset",
@@ -58,6 +59,7 @@ Result<MjcfFile> MjcfFileReader::run(const std::string& fallback_name) {
   for_each_section("actuator", [&](const MjcfElement& e) {
     for (const MjcfElement& child : e.children) read_actuator(child);
   });
+  for_each_section("sensor", [&](const MjcfElement& e) { read_sensors(e); });
   for_each_section("keyframe", [&](const MjcfElement& e) { read_keyframes(e); });
   for (const MjcfElement& e : document_.root.children) report_section(e);
   return std::move(file_);
@@ -164,7 +166,7 @@ void MjcfFileReader::read_content(const MjcfElement& element, int index, MjcfCla
 void MjcfFileReader::report_unknown(const MjcfElement& element, const MjcfElement& parent) {
   if (element.name == "camera" || element.name == "light") {
     reader_.unsupported(element, fmt::format("<{}> ignored: the scene sets the view", element.name),
-                        "Set sim.camera in the scene.");
+                        "Set visuals.camera and visuals.look in the scene.");
     return;
   }
   constexpr std::array<std::string_view, 7> kKnown{"body", "geom", "site", "frame", "joint", "inertial", "freejoint"};
@@ -182,7 +184,9 @@ void MjcfFileReader::read_site(const MjcfElement& element, int index, MjcfClass 
   Pose pose = frame * reader_.pose(element, cls);
   if (const auto ends = reader_.numbers(element, cls, "fromto", 6, 6); !ends.empty())
     pose.position = frame * (0.5 * (Vec3(ends[0], ends[1], ends[2]) + Vec3(ends[3], ends[4], ends[5])));
-  body(index).sites.emplace_back(name, pose);
+  const std::vector<double> size = reader_.numbers(element, cls, "size", 1, 3);
+  const double radius = size.empty() ? kDefaultSiteSize : *std::max_element(size.begin(), size.end());
+  body(index).sites.push_back({name, pose, std::clamp(radius, 1e-6, 1e6)});
 }
 
 bool MjcfFileReader::read_tensor(const MjcfElement& element, UrdfInertial& out) {

@@ -12,11 +12,16 @@
 #include "base/result.h"
 #include "model/mjcf/document.h"
 #include "model/mjcf/file.h"
+#include "model/mjcf/heightfields.h"
 #include "model/mjcf/reader.h"
+#include "model/mjcf/spatial_tendons.h"
 
 namespace limber::model {
 
 inline constexpr std::size_t kMaxMjcfBodies = 10'000;
+
+/// Path of a file that an asset names, relative to the model's folder. [any]
+std::string mjcf_asset_path(const MjcfCompiler& compiler, const std::string& folder, const std::string& file);
 
 class MjcfFileReader {
  public:
@@ -35,7 +40,7 @@ class MjcfFileReader {
   };
   struct Site {
     int body = 0;
-    Pose pose;
+    MjcfSite site;
   };
   struct TendonJoint {
     MjcfJoint* joint = nullptr;
@@ -58,7 +63,6 @@ class MjcfFileReader {
   bool read_tensor(const MjcfElement& element, UrdfInertial& out);
   // joints.cpp
   void read_joint(const MjcfElement& element, MjcfBody& body, MjcfClass inherited, const Pose& frame);
-  void read_free_joint(const MjcfElement& element, MjcfBody& body);
   void read_limits(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint);
   void read_spring(const MjcfElement& element, MjcfClass cls, double stiffness, MjcfJoint& joint);
   void read_passive_forces(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint);
@@ -90,6 +94,8 @@ class MjcfFileReader {
   void couple_joints(const MjcfElement& element, MjcfClass cls);
   void couple_tendon(const MjcfElement& element, MjcfClass cls);
   const Site* site_named(const MjcfElement& element, const char* attribute);
+  // sensors.cpp
+  void read_sensors(const MjcfElement& section);
   // relations.cpp
   void read_keyframes(const MjcfElement& section);
   void apply_keyframe(const MjcfElement& element);
@@ -115,7 +121,9 @@ class MjcfFileReader {
   std::vector<std::string> joint_names_;  // the first ones, for suggestions
   std::map<std::string, Site, std::less<>> sites_;
   std::map<std::string, std::vector<TendonJoint>, std::less<>> fixed_tendons_;  // the joints of each
+  SpatialTendons spatial_tendons_{reader_, file_.tendons};
   std::map<std::string, MeshAsset, std::less<>> meshes_;
+  MjcfHeightfields heightfields_;
   std::map<std::string, Material, std::less<>> materials_;
   std::map<std::string, std::string, std::less<>> textures_;  // the images of textures in files
 };

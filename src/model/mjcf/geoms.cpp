@@ -73,13 +73,13 @@ bool MjcfFileReader::read_shape(const MjcfElement& element, MjcfClass cls, const
     }
     return set_mesh(element, *mesh, geom);
   }
+  if (type == "hfield") return heightfields_.apply(reader_, element, reader_.text(element, cls, "hfield"), geom);
   constexpr std::array<std::string_view, 6> kTypes{"sphere", "capsule", "cylinder", "box", "ellipsoid", "plane"};
   if (std::find(kTypes.begin(), kTypes.end(), type) == kTypes.end()) {
-    const bool known = type == "hfield" || type == "sdf";
     reader_.unsupported(element,
-                        known ? fmt::format("<geom type='{}'> ignored: nothing collides with it", type)
-                              : fmt::format("'{}' is not a geom type; ignored", printable_excerpt(type)),
-                        "Use plane, sphere, capsule, cylinder, box, ellipsoid or mesh.", Severity::error);
+                        type == "sdf" ? fmt::format("<geom type='{}'> ignored: nothing collides with it", type)
+                                      : fmt::format("'{}' is not a geom type; ignored", printable_excerpt(type)),
+                        "Use plane, sphere, capsule, cylinder, box, ellipsoid, mesh or hfield.", Severity::error);
     return false;
   }
   if (type == "plane") {

@@ -17,7 +17,8 @@ constexpr std::size_t kMaxJointsOfBody = 6;
 constexpr double kMaxForce = 1e9;
 constexpr double kMaxStiffness = 1e6;
 constexpr double kMaxArmature = 1e6;
-constexpr double kMaxBound = 1e4;  // limits beyond this mean none
+constexpr double kMinBallAngle = 0.01;  // rad
+constexpr double kMaxBound = 1e4;       // limits beyond this mean none
 
 std::optional<JointType> joint_type_of(std::string_view text) {
   if (text == "hinge") return JointType::revolute;
@@ -26,24 +27,46 @@ std::optional<JointType> joint_type_of(std::string_view text) {
   return {};
 }
 
-}  // namespace
-
-void MjcfFileReader::read_free_joint(const MjcfElement& element, MjcfBody& body) {
+void read_free_joint(MjcfReader& reader, const MjcfElement& element, MjcfBody& body) {
   if (body.parent != 0 || !body.joints.empty() || body.free) {
-    reader_.error(
+    reader.error(
         element,
-        fmt::format("{} ignored: a free joint must be the only joint of a top-level body", reader_.shown(element)),
+        fmt::format("{} ignored: a free joint must be the only joint of a top-level body", reader.shown(element)),
         "Move the body into <worldbody>, and remove its other joints.");
     return;
   }
   body.free = true;
 }
 
+// Limits the angle of the whole rotation to the larger number, as MuJoCo does.
+void read_ball_range(MjcfReader& reader, const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
+  const std::vector<double> range = reader.numbers(element, cls, "range", 2, 2);
+  if (range.empty()) return;
+  const double angle = std::max(range[0], range[1]) * (reader.compiler.degrees ? kPi / 180 : 1);
+  if (!(angle > 0)) {
+    reader.error(element,
+                 fmt::format("{}: range {:g} {:g} can't be a limit; the joint is free", reader.shown(element), range[0],
+                             range[1]),
+                 "Write range=\"0 angle\" with the largest angle of the rotation.");
+    return;
+  }
+  joint.largest_angle = std::clamp(angle, kMinBallAngle, kPi);
+  if (angle < kMinBallAngle) {
+    reader.warning(
+        element,
+        fmt::format("{}: the largest angle is {:.3g} rad; using {:g} rad", reader.shown(element), angle, kMinBallAngle),
+        "To lock the rotation, remove the joint.");
+  }
+}
+
+}  // namespace
+
 void MjcfFileReader::read_joint(const MjcfElement& element, MjcfBody& body, MjcfClass inherited, const Pose& frame) {
   reader_.check_attributes(element);
   const MjcfClass cls = reader_.class_of(element, inherited);
   const std::string* const written = reader_.text(element, cls, "type");
-  if (element.name == "freejoint" || (written != nullptr && *written == "free")) return read_free_joint(element, body);
+  if (element.name == "freejoint" || (written != nullptr && *written == "free"))
+    return read_free_joint(reader_, element, body);
   MjcfJoint joint;
   joint.line = reader_.line_of(element);
   const std::optional<JointType> type = joint_type_of(written == nullptr ? "hinge" : *written);
@@ -79,11 +102,7 @@ void MjcfFileReader::read_joint(const MjcfElement& element, MjcfBody& body, Mjcf
 void MjcfFileReader::read_limits(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
   const bool limited = reader_.limited(element, cls, "limited", "range");
   if (joint.type == JointType::spherical) {
-    if (limited) {
-      reader_.unsupported(element, "range of a ball joint ignored: the joint is free",
-                          "Set joint.angular_lower_limit and angular_upper_limit in the scene.", Severity::warning);
-    }
-    return;
+    return limited ? read_ball_range(reader_, element, cls, joint) : void();
   }
   const double unit = joint.type == JointType::revolute && reader_.compiler.degrees ? kPi / 180 : 1;
   joint.reference = reader_.number(element, cls, "ref", 0) * unit;

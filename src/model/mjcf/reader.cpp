@@ -123,7 +123,10 @@ const std::string* MjcfReader::default_text(std::string_view tag, MjcfClass cls,
 
 const std::string* MjcfReader::text(const MjcfElement& element, MjcfClass cls, std::string_view attribute) const {
   const std::string* const own = element.attribute(attribute);
-  return own != nullptr ? own : default_text(element.name, cls, attribute);
+  // the defaults of both kinds of tendons have one name
+  const bool tendon = element.name == "fixed" || element.name == "spatial";
+  const std::string_view tag = tendon ? std::string_view("tendon") : std::string_view(element.name);
+  return own != nullptr ? own : default_text(tag, cls, attribute);
 }
 
 std::vector<double> MjcfReader::numbers(const MjcfElement& element, MjcfClass cls, const char* attribute,

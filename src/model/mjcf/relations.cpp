@@ -53,7 +53,7 @@ void MjcfFileReader::index_names() {
   constexpr std::size_t kMaxSuggestions = 200;
   for (std::size_t i = 0; i < file_.bodies.size(); ++i) {
     MjcfBody& b = file_.bodies[i];
-    for (const auto& [name, pose] : b.sites) sites_.try_emplace(name, Site{static_cast<int>(i), pose});
+    for (const MjcfSite& site : b.sites) sites_.try_emplace(site.name, Site{static_cast<int>(i), site});
     if (!b.name.empty()) body_index_.try_emplace(b.name, static_cast<int>(i));
     for (MjcfJoint& joint : b.joints) {
       if (joint.name.empty()) continue;
@@ -111,6 +111,7 @@ void MjcfFileReader::read_actuator(const MjcfElement& element) {
       }
       return;
     }
+    if (spatial_tendons_.drive(element, *tendon)) return;
   }
   if (element.attribute(attribute) == nullptr) {
     reader_.unsupported(element, fmt::format("<{}> that drives no joint ignored: it has no force", element.name),
@@ -196,9 +197,7 @@ void MjcfFileReader::apply_keyframe(const MjcfElement& element) {
     for (MjcfJoint& joint : b.joints) {
       if (joint.type == JointType::spherical) {
         const Quat rotation = quat_xyzw(values[at + 1], values[at + 2], values[at + 3], values[at]);
-        if (!nearly_same(rotation, quat_identity())) {
-          reader_.unsupported(element, "<key>: the start of a ball joint is ignored", "Set it in the scene.");
-        }
+        if (glm::length(rotation) > 1e-9) joint.start_rotation = glm::normalize(rotation);
         at += 4;
       } else {
         joint.start = std::clamp(values[at++] - joint.reference, -1e4, 1e4);
@@ -211,14 +210,9 @@ void MjcfFileReader::report_section(const MjcfElement& section) {
   if (section.name == "option") {
     reader_.unsupported(section, "<option> ignored: the scene sets gravity and time step",
                         "Set sim.gravity and sim.timestep in the scene.");
-  } else if (section.name == "sensor") {
-    for (const MjcfElement& e : section.children) {
-      reader_.unsupported(e, fmt::format("<{}> in <sensor> ignored: nothing is measured", printable_excerpt(e.name)),
-                          "Read the properties of parts and joints instead.");
-    }
   } else if (section.name == "visual" || section.name == "statistic") {
     reader_.unsupported(section, fmt::format("<{}> ignored: the scene sets the view", section.name),
-                        "Set sim.camera in the scene.");
+                        "Set visuals.camera and visuals.look in the scene.");
   } else if (section.name == "custom") {
     reader_.unsupported(section, "<custom> ignored: its numbers and texts have no meaning here",
                         "Keep them in the scene.");

@@ -1,7 +1,8 @@
-// Tendons: fixed ones are weighted sums of joint values, for actuators and equalities; others are reported.
+// Tendons: fixed ones are weighted sums of joint values, for actuators and equalities.
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -28,11 +29,14 @@ void MjcfFileReader::read_tendons(const MjcfElement& section) {
     if (e.name == "fixed") {
       read_fixed_tendon(e);
     } else if (e.name == "spatial") {
-      reader_.unsupported(e, "<spatial> in <tendon> ignored: it pulls at nothing",
-                          "Use springs of joints in the scene.", Severity::warning);
+      spatial_tendons_.read(e, [this](const MjcfElement& point) -> std::optional<TendonModel::Point> {
+        const Site* const site = site_named(point, "site");
+        if (site == nullptr) return {};
+        return TendonModel::Point{site->body, site->site.pose.position};
+      });
     } else {
       reader_.unknown(e, fmt::format("<{}> in <tendon> ignored: it is not a tendon", printable_excerpt(e.name)), kKinds,
-                      "Use fixed.");
+                      "Use fixed or spatial.");
     }
   }
 }

@@ -3,16 +3,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "base/plural.h"
 #include "base/text.h"
+#include "model/mesh/surface.h"
 
 namespace limber::model {
 
 namespace {
+
+// Root links that are fixed to the world collide with the triangles of concave meshes.
+bool collides_as_surface(const UrdfBuildContext& build, std::size_t node, const UrdfShape& shape) {
+  return shape.concave && shape.shape.kind == ShapeKind::mesh && build.body_link[node] == 0 && is_root_fixed(build);
+}
 
 PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
   PlacedShape out;
@@ -22,7 +29,7 @@ PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
   if (out.shape.texture == nullptr) out.color = from.material.color;
   out.alpha = from.material.alpha;
   out.shape.mesh_colors = from.material.keeps_mesh_colors() && out.shape.texture == nullptr;
-  if (!collides || !from.shape.mesh || !from.shape.mesh->primitive) return out;
+  if (!collides || !from.shape.mesh || from.shape.surface != nullptr || !from.shape.mesh->primitive) return out;
   // a mesh recognized as a box, sphere or capsule collides as that primitive, at the primitive's pose
   const PlacedShape& primitive = *from.shape.mesh->primitive;
   out.shape = primitive.shape;
@@ -35,8 +42,32 @@ PlacedShape placed(const UrdfShape& from, const Pose& offset, bool collides) {
 void add_shapes(UrdfBuildContext& build, std::size_t node) {
   LinkModel& to = build.model.links[static_cast<std::size_t>(build.body_link[node])];
   const UrdfLink& from = build.link(node);
-  for (const UrdfShape& s : from.collisions) to.collisions.push_back(placed(s, build.offset[node], true));
+  for (const UrdfShape& s : from.collisions) {
+    UrdfShape shape = s;
+    if (collides_as_surface(build, node, s)) shape.shape.surface = std::make_shared<Surface>(s.shape.mesh);
+    to.collisions.push_back(placed(shape, build.offset[node], true));
+  }
   for (const UrdfShape& s : from.visuals) to.visuals.push_back(placed(s, build.offset[node], false));
+}
+
+// Concave meshes of links that can move collide as their hulls.
+void report_concave_hulls(UrdfBuildContext& build) {
+  std::size_t count = 0;
+  const UrdfShape* first = nullptr;
+  std::string owner;
+  for (std::size_t node = 0; node < build.tree.size(); ++node) {
+    for (const UrdfShape& shape : build.link(node).collisions) {
+      if (!shape.concave || shape.shape.kind != ShapeKind::mesh || collides_as_surface(build, node, shape)) continue;
+      if (count++ > 0) continue;
+      first = &shape;
+      owner = printable(build.link(node).name);
+    }
+  }
+  if (count == 0) return;
+  build.problems.warning(first->line,
+                         fmt::format("link '{}' can move; its mesh with concave=\"yes\" collides as its convex hull{}",
+                                     owner, count > 1 ? fmt::format(" … and {} more of this kind", count - 1) : ""),
+                         "Split the mesh into convex pieces, one <collision> for each.");
 }
 
 JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
@@ -58,6 +89,7 @@ JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
   out.damping = from.damping;
   out.friction = from.friction;
   out.armature = from.armature;
+  out.ball = from.ball;
   out.spring = from.spring;
   out.start = from.start;
   out.driven = from.driven;
@@ -122,9 +154,27 @@ void choose_motors(UrdfBuildContext& build) {
   report_motors(build, passive, without, unlimited);
 }
 
-// frames on links, and pairs of links that don't collide
+// Adds a tendon with the points that are on links of the tree, if they are on at least two links.
+void add_tendon(UrdfBuildContext& build, const TendonModel& from, const std::vector<int>& node_of_link) {
+  TendonModel tendon = from;
+  tendon.points.clear();
+  for (const TendonModel::Point& point : from.points) {
+    const int node = node_of_link[static_cast<std::size_t>(point.link)];
+    if (node < 0) continue;
+    const auto at = static_cast<std::size_t>(node);
+    tendon.points.push_back({build.body_link[at], build.offset[at] * point.position});
+  }
+  const bool connects = std::any_of(tendon.points.begin(), tendon.points.end(), [&](const TendonModel::Point& point) {
+    return point.link != tendon.points.front().link;
+  });
+  if (connects) build.model.tendons.push_back(std::move(tendon));
+}
+
+// frames and sensors on links, tendons, and pairs of links that don't collide
 void add_frames_and_exclusions(UrdfBuildContext& build) {
-  if (build.file.frames.empty() && build.file.exclusions.empty()) return;
+  if (build.file.frames.empty() && build.file.exclusions.empty() && build.file.tendons.empty() &&
+      build.file.sensors.empty())
+    return;
   std::vector<int> node_of_link(build.file.links.size(), -1);
   for (std::size_t node = 0; node < build.tree.size(); ++node)
     node_of_link[static_cast<std::size_t>(build.tree[node].link)] = static_cast<int>(node);
@@ -133,6 +183,14 @@ void add_frames_and_exclusions(UrdfBuildContext& build) {
     if (node < 0) continue;
     const auto at = static_cast<std::size_t>(node);
     build.model.merged.push_back({frame.name, build.body_link[at], build.offset[at] * frame.pose, true});
+  }
+  for (const TendonModel& tendon : build.file.tendons) add_tendon(build, tendon, node_of_link);
+  for (const SensorModel& sensor : build.file.sensors) {
+    const int node = node_of_link[static_cast<std::size_t>(sensor.link)];
+    if (node < 0) continue;
+    SensorModel& out = build.model.sensors.emplace_back(sensor);
+    out.link = build.body_link[static_cast<std::size_t>(node)];
+    out.pose = build.offset[static_cast<std::size_t>(node)] * sensor.pose;
   }
   for (const auto& [a, b] : build.file.exclusions) {
     const int node_a = node_of_link[static_cast<std::size_t>(a)];
@@ -205,6 +263,7 @@ void build_structure(UrdfBuildContext& build) {
     }
     add_shapes(build, node);
   }
+  report_concave_hulls(build);
   choose_motors(build);
   add_frames_and_exclusions(build);
 }

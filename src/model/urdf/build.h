@@ -41,6 +41,8 @@ Result<void> build_body(UrdfBuildContext& build);
 
 /// Creates links, merged links, and joints with frames and limits. The shapes' meshes must be loaded already. [any]
 void build_structure(UrdfBuildContext& build);
+/// True if the root is fixed to the world, by the options, the file, or because it has no mass (mass.cpp). [any]
+bool is_root_fixed(const UrdfBuildContext& build);
 /// Sets masses and inertia tensors, and decides if the root is static (mass.cpp). [any]
 void build_masses(UrdfBuildContext& build);
 /// Resolves mimic joints, sets start values, home and start poses, and fills `file_links` and `file_joints`

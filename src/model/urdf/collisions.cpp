@@ -120,7 +120,7 @@ void check_hollow_meshes(UrdfBuildContext& build) {
   for (std::size_t i = 0; i < build.model.links.size(); ++i) {
     for (const PlacedShape& placed : build.model.links[i].collisions) {
       const MeshModel* const mesh = placed.shape.mesh.get();
-      if (mesh == nullptr) continue;
+      if (mesh == nullptr || placed.shape.surface != nullptr) continue;
       const double volume = enclosed_volume(*mesh);
       if (volume <= 0 || mesh->hull_volume <= kHollowRatio * volume || count++ > 0) continue;
       line = line_of_link(build, static_cast<int>(i));

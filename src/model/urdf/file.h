@@ -45,6 +45,9 @@ struct UrdfShape {
   ShapeModel shape;
   std::string mesh_uri;
   Vec3 mesh_scale{1, 1, 1};
+  bool concave = false;  ///< A mesh that is meant to collide as it is, not as its hull.
+  /// Of an image with the heights of a heightfield, whose width, length and height are `mesh_scale`; empty: none.
+  std::string heights_uri;
   std::string material_name;  ///< Names the material of the file to use if `material` is empty.
   UrdfMaterial material;
 };
@@ -67,7 +70,7 @@ struct UrdfMimic {
   double offset = 0;
 };
 
-struct UrdfJoint {
+struct UrdfJoint : JointDynamics {
   std::string name;
   int line = 0;
   JointType type = JointType::fixed;
@@ -81,12 +84,11 @@ struct UrdfJoint {
   double upper = 0;
   std::optional<double> effort;    ///< As written; empty: absent.
   std::optional<double> velocity;  ///< As written; 0 or empty: no limit.
-  double damping = 0;
-  double friction = 0;
-  double armature = 0;  ///< MJCF: inertia of the rotor, kg·m² or kg.
-  SpringModel spring;   ///< MJCF
-  double start = 0;     ///< MJCF: value at the start, from a keyframe.
-  bool driven = true;   ///< MJCF: false if the joint has no actuator.
+  BallLimitsModel ball;
+  SpringModel spring;                     ///< MJCF
+  double start = 0;                       ///< MJCF: value at the start, from a keyframe.
+  Quat start_rotation = quat_identity();  ///< MJCF: of a spherical joint.
+  bool driven = true;                     ///< MJCF: false if the joint has no actuator.
   std::optional<UrdfMimic> mimic;
 };
 
@@ -120,6 +122,8 @@ struct UrdfFile {
   std::vector<UrdfLoop> loops;
   // MJCF only
   std::vector<UrdfFrame> frames;
+  std::vector<TendonModel> tendons;             ///< Their links are indices into `links`.
+  std::vector<SensorModel> sensors;             ///< `link`: index into `links`; poses are in its frame.
   std::vector<std::pair<int, int>> exclusions;  ///< Pairs of links that don't collide; indices into `links`.
   std::optional<bool> fixed_root;               ///< Unset: a root without mass is fixed to the world.
   Pose root_home;                               ///< Pose of the root link.

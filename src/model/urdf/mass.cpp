@@ -1,5 +1,7 @@
 // Masses of the body's links: from the file, or estimated from the shapes; replaces physically impossible tensors.
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -80,11 +82,13 @@ Inertial declared_inertial(UrdfBuildContext& build, const UrdfLink& link) {
 }
 
 void drop_planes(UrdfBuildContext& build, LinkModel& link, int line) {
-  const auto is_plane = [](const PlacedShape& s) { return s.shape.kind == ShapeKind::plane; };
-  if (std::erase_if(link.collisions, is_plane) == 0) return;
-  build.problems.error(line,
-                       fmt::format("link '{}' moves; its <plane> collision shape is ignored", printable(link.name)),
-                       "Use a box, or attach the plane to the fixed root.");
+  const auto found = std::ranges::find_if(link.collisions, [](const PlacedShape& s) { return is_ground(s.shape); });
+  if (found == link.collisions.end()) return;
+  const char* const kind = found->shape.kind == ShapeKind::plane ? "<plane>" : "heightfield";
+  std::erase_if(link.collisions, [](const PlacedShape& s) { return is_ground(s.shape); });
+  build.problems.error(
+      line, fmt::format("link '{}' moves; its {} collision shape is ignored", printable(link.name), kind),
+      fmt::format("Use a box, or attach the {} to the fixed root.", kind[0] == '<' ? "plane" : "heightfield"));
 }
 
 void report_root(UrdfBuildContext& build, const UrdfLink& root, bool has_mass, double merged_mass) {
@@ -124,7 +128,7 @@ class MassBuilder {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
       LinkModel& link = build_.model.links[i];
       link.inertial = combined(parts_[i]);
-      const bool is_static = i == 0 && is_root_fixed();
+      const bool is_static = i == 0 && is_root_fixed(build_);
       if (i == 0) report_root(build_, build_.link(0), root_has_mass_, link.inertial.mass);
       if (is_static) {
         link.inertial = {};
@@ -153,10 +157,6 @@ class MassBuilder {
                                      counted(markers_, "link"), kMaxMarkerMass, printable(first.name),
                                      plural(markers_, "marks", "mark"), plural(markers_, "its", "their")),
                          "Nothing to do; scripts find the frames with body:link(name).");
-  }
-
-  bool is_root_fixed() const {
-    return build_.options.fixed_base.value_or(build_.file.fixed_root.value_or(!root_has_mass_));
   }
 
   // a root without a mass that is not fixed: adds the mass of its own shapes to that of the links merged into it
@@ -202,6 +202,12 @@ class MassBuilder {
 };
 
 }  // namespace
+
+bool is_root_fixed(const UrdfBuildContext& build) {
+  const std::optional<UrdfInertial>& inertial = build.link(0).inertial;
+  const bool has_mass = inertial && inertial->mass > 0;
+  return build.options.fixed_base.value_or(build.file.fixed_root.value_or(!has_mass));
+}
 
 void build_masses(UrdfBuildContext& build) { MassBuilder(build).run(); }
 

@@ -1,5 +1,6 @@
 // Each mesh is loaded once for each scale.
 #include "model/urdf/mesh_loader.h"
+#include "model/mesh/heightfield.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -54,17 +55,38 @@ void MeshLoader::run(UrdfFile& file, const std::vector<UrdfNode>& tree) {
 }
 
 bool MeshLoader::load(UrdfShape& shape, const std::string& owner, bool drawn) {
-  if (!load_mesh(shape, owner)) return false;
+  if (!load_heights(shape, owner) || !load_mesh(shape, owner)) return false;
   if (drawn && shape.shape.mesh != nullptr) report_look(shape, *shape.shape.mesh);
   if (!shape.material.texture_uri.empty()) load_texture(shape, owner);
   return true;
 }
 
+bool MeshLoader::load_heights(UrdfShape& shape, const std::string& owner) {
+  if (shape.heights_uri.empty()) return true;
+  const Result<std::shared_ptr<const Image>>& image = image_at(shape.heights_uri);
+  Result<ShapeModel> field = Error{image ? "" : image.error()};
+  if (image) {
+    std::vector<double> heights = normalized_heights(heights_of(**image), shape.mesh_scale.z);
+    field = heightfield_shape({(*image)->width, (*image)->height, shape.mesh_scale.x, shape.mesh_scale.y, heights},
+                              (*image)->file);
+  }
+  if (!field) {
+    const auto [text, fix] = split_fix(field.error(), "Fix the image.");
+    problems_.error(shape.line, fmt::format("{} heightfield ignored: {}", owner, text), fix);
+    return false;
+  }
+  shape.shape = *field;
+  return true;
+}
+
+const Result<std::shared_ptr<const Image>>& MeshLoader::image_at(const std::string& uri) {
+  const auto known = images_.find(uri);
+  return known != images_.end() ? known->second : images_.emplace(uri, read_image(uri)).first->second;
+}
+
 void MeshLoader::load_texture(UrdfShape& shape, const std::string& owner) {
   const std::string& uri = shape.material.texture_uri;
-  const auto known = images_.find(uri);
-  const Result<std::shared_ptr<const Image>>& image =
-      known != images_.end() ? known->second : images_.emplace(uri, read_image(uri)).first->second;
+  const Result<std::shared_ptr<const Image>>& image = image_at(uri);
   const MeshModel* const mesh = shape.shape.mesh.get();
   const bool has_texcoords = mesh == nullptr || (mesh->look != nullptr && !mesh->look->texcoords.empty());
   if (image && has_texcoords) {

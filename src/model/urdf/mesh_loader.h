@@ -36,6 +36,8 @@ class MeshLoader {
   using MeshResult = Result<std::shared_ptr<const MeshModel>>;
 
   bool load_mesh(UrdfShape& shape, const std::string& owner);
+  bool load_heights(UrdfShape& shape, const std::string& owner);
+  const Result<std::shared_ptr<const Image>>& image_at(const std::string& uri);
   void load_texture(UrdfShape& shape, const std::string& owner);
   Result<std::shared_ptr<const Image>> read_image(const std::string& uri);
   void report_look(const UrdfShape& shape, const MeshModel& mesh);

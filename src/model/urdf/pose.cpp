@@ -195,6 +195,8 @@ Pose joint_transform(const UrdfJoint& joint, double value) {
     const Quat rotation = quat_axis(joint.axis, value);
     return {joint.anchor - rotation * joint.anchor, rotation};
   }
+  if (joint.type == JointType::spherical)
+    return {joint.anchor - joint.start_rotation * joint.anchor, joint.start_rotation};
   return {};
 }
 

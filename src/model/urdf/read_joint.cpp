@@ -29,6 +29,8 @@ constexpr std::array<TypeName, 8> kTypeNames{{{JointType::fixed, "fixed"},
 constexpr NumberRange kForceRange{0, 1e9, "from 0 to 1e9 (N·m or N)"};
 constexpr NumberRange kSpeedRange{0, 1e9, "from 0 to 1e9 (rad/s or m/s)"};
 constexpr NumberRange kDampingRange{0, 1e9, "from 0 to 1e9"};
+constexpr NumberRange kConeRange{0.01, kPi, "from 0.01 to π"};
+constexpr NumberRange kTwistRange{-kPi, kPi, "within π"};
 constexpr NumberRange kBoundRange{-1e300, 1e300, "in radians or meters"};
 constexpr NumberRange kFactorRange{-1e6, 1e6, "within 1e6"};
 constexpr NumberRange kAxisRange{-1e300, 1e300, "as the components of a direction"};
@@ -86,11 +88,34 @@ std::optional<UrdfJoint> UrdfReader::joint(const Element& element, const std::st
 void UrdfReader::spherical(const Element& element, const std::string& owner, UrdfJoint& out) {
   out.axis = Vec3(0, 0, 1);
   out.driven = false;
-  const Element* found = child(element, "limit");
-  if (!found || (!found->Attribute("lower") && !found->Attribute("upper"))) return;
+  const Element* found = unique_child(element, "limit", owner);
+  if (!found) return;
+  check_attributes(*found, {"cone", "twist_lower", "twist_upper", "rotation", "lower", "upper", "effort", "velocity"});
+  ball_limits(*found, owner, out.ball);
+  if (!found->Attribute("lower") && !found->Attribute("upper")) return;
   problems.warning(found->GetLineNum(),
-                   fmt::format("{}: the limits of a spherical joint are ignored; it is free", owner),
-                   "Set joint.angular_lower_limit and angular_upper_limit in the scene.");
+                   fmt::format("{}: the limits of a spherical joint are ignored: it has no single angle", owner),
+                   "Write cone=, twist_lower= and twist_upper=, or rotation=, in radians.");
+}
+
+// Attributes of <limit> that extend URDF.
+void UrdfReader::ball_limits(const Element& limit, const std::string& owner, BallLimitsModel& out) {
+  out.cone = number(limit, "cone", owner, kConeRange).value_or(out.cone);
+  out.angle = number(limit, "rotation", owner, kConeRange).value_or(out.angle);
+  const std::optional<double> lower = number(limit, "twist_lower", owner, kTwistRange);
+  const std::optional<double> upper = number(limit, "twist_upper", owner, kTwistRange);
+  if (!lower && !upper) return;
+  if (!lower || !upper || *lower > *upper) {
+    problems.warning(limit.GetLineNum(),
+                     lower && upper
+                         ? fmt::format("{}: twist_lower {:.6g} is above twist_upper {:.6g}; its twist is free", owner,
+                                       *lower, *upper)
+                         : fmt::format("{}: has only one limit of its twist, which is free", owner),
+                     "Write twist_lower= and twist_upper= in radians, the lower one first.");
+    return;
+  }
+  out.twist_lower = *lower;
+  out.twist_upper = *upper;
 }
 
 void UrdfReader::dynamics(const Element& element, const std::string& owner, UrdfJoint& out) {

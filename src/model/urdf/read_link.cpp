@@ -17,6 +17,11 @@ constexpr NumberRange kTensorRange{-1e12, 1e12, "within 1e12 kg·m²"};
 constexpr NumberRange kScaleRange{-1e6, 1e6, "within 1e6, not 0"};
 constexpr NumberRange kNormalRange{-1e6, 1e6, "within 1e6"};
 
+bool is_concave(const tinyxml2::XMLElement& element) {
+  const char* const text = element.Attribute("concave");
+  return text != nullptr && !same_name(text, "no") && !same_name(text, "false") && !same_name(text, "0");
+}
+
 }  // namespace
 
 UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
@@ -25,7 +30,7 @@ UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
   out.line = element.GetLineNum();
   const std::string owner = fmt::format("link '{}'", printable(name));
   check_attributes(element, {"name"});
-  check_concave(element, owner);
+  const bool concave = is_concave(element);
   if (const Element* found = unique_child(element, "inertial", owner)) out.inertial = inertial(*found, owner);
   for (const Element* e = element.FirstChildElement(); e; e = e->NextSiblingElement()) {
     const std::string_view kind = name_of(*e);
@@ -38,7 +43,9 @@ UrdfLink UrdfReader::link(const Element& element, const std::string& name) {
       break;
     }
     std::optional<UrdfShape> read = shape(*e, owner);
-    if (read) to.push_back(std::move(*read));
+    if (!read) continue;
+    if (concave && kind == "collision") read->concave = true;
+    to.push_back(std::move(*read));
   }
   return out;
 }
@@ -95,7 +102,6 @@ std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::st
   UrdfShape out;
   out.line = element.GetLineNum();
   check_attributes(element, {"name"});
-  if (name_of(element) == "collision") check_concave(element, owner);
   out.origin = origin(element, owner);
   const Element* geometry_element = unique_child(element, "geometry", owner);
   const Element* kind = geometry_element ? geometry_element->FirstChildElement() : nullptr;
@@ -110,7 +116,7 @@ std::optional<UrdfShape> UrdfReader::shape(const Element& element, const std::st
                      fmt::format("Write one <{}> for each shape.", name_of(element)));
   }
   if (!geometry(*kind, owner, out)) return std::nullopt;
-  if (name_of(element) == "collision") check_concave(*kind, owner);
+  out.concave = is_concave(element) || is_concave(*kind);
   if (const Element* element_of_material = child(element, "material")) {
     check_attributes(*element_of_material, {"name"});
     if (const char* name = element_of_material->Attribute("name")) out.material_name = name;

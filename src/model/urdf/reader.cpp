@@ -199,14 +199,6 @@ void UrdfReader::check_attributes(const Element& element, std::initializer_list<
   }
 }
 
-void UrdfReader::check_concave(const Element& element, const std::string& owner) {
-  const char* text = element.Attribute("concave");
-  if (!text || same_name(text, "no") || same_name(text, "false") || same_name(text, "0")) return;
-  if (concave_meshes_++ > 0) return;
-  concave_line_ = element.GetLineNum();
-  concave_owner_ = owner;
-}
-
 void UrdfReader::report_attributes() {
   for (const auto& [key, entry] : unused_attributes_) {
     const auto& [element, attribute] = key;
@@ -220,12 +212,6 @@ void UrdfReader::report_attributes() {
       problems.note(entry.line, std::move(text), "Nothing to do, unless you expected an effect.");
     }
   }
-  if (concave_meshes_ == 0) return;
-  problems.warning(
-      concave_line_,
-      fmt::format("{}: concave=\"yes\" is not supported; the mesh collides as its convex hull{}", concave_owner_,
-                  concave_meshes_ > 1 ? fmt::format(" … and {} more of this kind", concave_meshes_ - 1) : ""),
-      "Split the mesh into convex pieces, one <collision> for each.");
 }
 
 void UrdfReader::report_deferred() {

@@ -65,7 +65,7 @@ class UrdfReader {
   /// Counts attributes of an element that are not in `known`; finish() reports them.
   void check_attributes(const Element& element, std::initializer_list<std::string_view> known);
 
-  /// Reports, once for the whole file, numbers in unusual notation and (grouped) unknown attributes and concave meshes.
+  /// Reports, once for the whole file, numbers in unusual notation and (grouped) unknown attributes.
   void report_deferred();
 
   Problems& problems;
@@ -77,7 +77,6 @@ class UrdfReader {
     std::vector<std::string_view> known;
   };
   void report_attributes();
-  void check_concave(const Element& element, const std::string& owner);
   std::optional<double> parse_in_range(std::string_view text, int line, const std::string& where,
                                        const NumberRange& range);
   bool numbers(const Element& element, const char* attribute, const std::string& owner, const NumberRange& range,
@@ -92,6 +91,7 @@ class UrdfReader {
   Vec3 axis(const Element& element, const std::string& owner);
   bool loop_sides(const Element& element, const std::string& owner, UrdfLoop& out);
   void spherical(const Element& element, const std::string& owner, UrdfJoint& out);
+  void ball_limits(const Element& limit, const std::string& owner, BallLimitsModel& out);
   void limit(const Element& element, const std::string& owner, UrdfJoint& out);
   void bounds(const Element& limit, const std::string& owner, UrdfJoint& out);
   std::optional<UrdfMimic> mimic(const Element& element, const std::string& owner);
@@ -102,9 +102,6 @@ class UrdfReader {
   int nonstandard_line_ = 0;
   std::string nonstandard_text_;
   std::map<std::pair<std::string, std::string>, UnusedAttribute> unused_attributes_;  // by element and attribute
-  int concave_meshes_ = 0;
-  int concave_line_ = 0;
-  std::string concave_owner_;
 };
 
 }  // namespace limber::model

@@ -36,7 +36,11 @@
 ---A sensor belongs to a body and is mounted on one of its parts. Its readouts are properties: the panel shows and plots
 ---them, and they are OSC addresses. [Sensors](../../howto/sensors.md) shows how to use them.
 
----@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, behaviors and gears.
+---@page tendons Tendons: cables and springs through points on parts.
+---A tendon pulls the parts that it goes through. Its tension is a property that can be played, for tentacles, puppets and
+---tensegrities. [Tendons](../../howto/tendons.md) shows how to use them.
+
+---@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, tendons, behaviors and gears.
 ---A list such as `body.parts` has numbers from 1 to `#body.parts`. Called like a function, with or without a pattern, it
 ---gives the objects one after the other: `for part in body:parts("leg*") do … end`. A pattern has `*` (any text), `?` (one
 ---character), `[1-3]`, `[!a]` and `{left,right}`. Instead of a pattern, it also accepts a list of names and objects.

@@ -11,6 +11,7 @@
 ---@field joints joint_list # read-only. Its joints, in stream order; call it to iterate over those that match a pattern.
 ---@field motors motor_list # read-only. Its motors, in stream order; call it to iterate over those that match a pattern.
 ---@field sensors sensor_list # read-only. Its sensors, in the order of their creation.
+---@field tendons tendon_list # read-only. Its tendons, in the order of their creation.
 ---@field behaviors behavior_list # read-only. Its behaviors, in the order in which they run.
 ---@field excluded_pairs part[][] # read-only. Pairs of parts that are excluded from collision: `{ { a, b }, … }`.
 ---@properties body
@@ -225,6 +226,7 @@ function part_:apply_torque(torque) end
 ---@error arm:joint(1).value = 1 --> joint 'arm/joint_1': 'value' is a readout: it can be read, not set
 ---@see body:add_joint, motor, sim:add_gear
 ---@example joints
+---@example ball_limits
 local joint_ = {}
 
 ---@class joint_opts

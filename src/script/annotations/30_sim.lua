@@ -185,6 +185,39 @@ function sim:add_cone_shape(name, radius, height) end
 ---@example mesh
 function sim:add_convex_mesh_shape(name, source, opts) end
 
+---@class mesh_shape_opts
+---@field scale? number|vec3like # default 1.
+
+---Creates the surface of a mesh file, which static and kinematic parts collide with, hollows included. It has no inside:
+---both of its sides hold others. Call it at the top level of the scene.
+---@param name string # A name of your choice, unique among shapes.
+---@param file string # STL, OBJ, DAE, PLY or glTF.
+---@param opts? mesh_shape_opts
+---@return shape
+---@error sim:add_mesh_shape("valley", "no.stl") --> there is no file 'no.stl'; looked for …
+---@see sim:add_convex_mesh_shape, sim:add_heightfield_shape
+---@example mesh_surface
+function sim:add_mesh_shape(name, file, opts) end
+
+---@class heightfield_opts
+---@field size vec3like|number[] # m, its width along x and length along y.
+---@field rows? integer # 2 .. 1024, number of heights along y.
+---@field columns? integer # 2 .. 1024, number of heights along x.
+---@field heights? number[]|fun(x: number, y: number): number # m, in rows from -y to +y, each from -x to +x; or a function of the place.
+---@field image? string # A PNG or JPEG file of at most 1024 × 1024 pixels instead of rows, columns and heights; its upper side is +y.
+---@field height? number # m, height of white in the image; black is at 0.
+
+---Creates terrain from heights on a grid, centered on the part's position, for static and kinematic parts. Call it at
+---the top level of the scene.
+---@param name string # A name of your choice, unique among shapes.
+---@param opts heightfield_opts
+---@return shape
+---@error sim:add_heightfield_shape("hill", { size = { 1, 1 }, rows = 1, columns = 2, heights = {} }) --> add_heightfield_shape: rows is 2 .. 1024, not 1
+---@error sim:add_heightfield_shape("hill", { size = { 1, 1 }, rows = 2, columns = 2, heights = { 1 } }) --> add_heightfield_shape: 2 rows and 2 columns need 4 heights, not 1
+---@see sim:add_plane_shape, sim:add_mesh_shape
+---@example terrain
+function sim:add_heightfield_shape(name, opts) end
+
 ---Creates a shape that consists of other shapes; see `shape:add_child`.
 ---@param name string # A name of your choice, unique among shapes.
 ---@return shape

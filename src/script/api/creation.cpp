@@ -206,7 +206,7 @@ std::int32_t add_part(void* c, std::int32_t slot, std::int32_t generation, const
   set_placement(placement, pose);
   const Pose at{placement.position.value_or(default_pose.position), placement.rotation.value_or(default_pose.rotation)};
   // a negative mass means "not given"
-  const double used_mass = mass >= 0 ? mass : shape->model().kind == model::ShapeKind::plane ? 0 : 1;
+  const double used_mass = mass >= 0 ? mass : model::is_ground(shape->model()) ? 0 : 1;
   const Result<sim::Part*> part = body->add_part(std::string(text_of(name, length)), *shape, used_mass, at);
   if (part && mass > 0) mark_explicit(context, (*part)->id(), "mass");
   if (part) mark_pose_explicit(context, (*part)->id(), placement);

@@ -13,6 +13,7 @@
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
 #include "sim/state/state_hash.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -22,7 +23,7 @@ namespace limber::script::calls {
 
 namespace {
 
-enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears, sensors };
+enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears, sensors, tendons };
 
 // The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
 template <class T>
@@ -57,6 +58,7 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   if (body == nullptr) return kRemoved;
   if (kind == behaviors) return item(c, body->behaviors().list(), i);
   if (kind == sensors) return item(c, body->sensors().list(), i);
+  if (kind == tendons) return item<sim::Tendon>(c, c.world->tendons().of(*body), i);
   if (kind == parts) return item(c, body->parts(), i);
   if (kind == joints) return item(c, body->joints(), i);
   return item(c, body->motors(), i);
@@ -87,6 +89,23 @@ template <class T>
 std::size_t index_in(std::span<const std::unique_ptr<T>> list, const T* object) {
   const auto at = std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.get() == object; });
   return static_cast<std::size_t>(at - list.begin());
+}
+
+std::int32_t find_in_body(ScriptContext& c, const sim::Body& body, std::int32_t kind, std::string_view wanted) {
+  if (kind == behaviors) return find_among(c, body.behaviors().list(), "behavior", body.id(), wanted);
+  if (kind == tendons) {
+    if (const sim::Tendon* tendon = c.world->tendons().find(body, wanted)) return c.set_id(tendon->id());
+    return find_among<sim::Tendon>(c, c.world->tendons().of(body), "tendon", body.id(), wanted);
+  }
+  // create texts only for errors: a look-up in every tick must not allocate
+  const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
+    if (thing != nullptr) return c.set_id(thing->id());
+    return id_or_error(c, thing, list, kind_name, fmt::format("body '{}' has", body.name()), wanted);
+  };
+  if (kind == sensors) return in_body(body.sensors().find(wanted), body.sensors().list(), "sensor");
+  if (kind == parts) return in_body(body.find_part(wanted), body.parts(), "part");
+  if (kind == joints) return in_body(body.find_joint(wanted), body.joints(), "joint");
+  return in_body(body.find_motor(wanted), body.motors(), "motor");
 }
 
 // Returns the part of a sensor (0), or the part that it sees (1).
@@ -164,22 +183,12 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
     return find_among(context, behavior->motors(), "motor", id, wanted);
   }
   const sim::Body* body = object_of<sim::Body>(context, id);
-  if (body == nullptr) return kRemoved;
-  if (kind == behaviors) return find_among(context, body->behaviors().list(), "behavior", id, wanted);
-  // create texts only for errors: a look-up in every tick must not allocate
-  const auto in_body = [&](auto* thing, auto list, std::string_view kind_name) {
-    if (thing != nullptr) return context.set_id(thing->id());
-    return id_or_error(context, thing, list, kind_name, fmt::format("body '{}' has", body->name()), wanted);
-  };
-  if (kind == sensors) return in_body(body->sensors().find(wanted), body->sensors().list(), "sensor");
-  if (kind == parts) return in_body(body->find_part(wanted), body->parts(), "part");
-  if (kind == joints) return in_body(body->find_joint(wanted), body->joints(), "joint");
-  return in_body(body->find_motor(wanted), body->motors(), "motor");
+  return body == nullptr ? kRemoved : find_in_body(context, *body, kind, wanted);
 }
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
-  // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors; then shapes, gears, groups;
-  // removed objects last.
+  // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors, tendons; then shapes, gears,
+  // groups; removed objects last.
   const ScriptContext& context = context_of(c);
   const sim::World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -207,6 +216,9 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   }
   if (const sim::Sensor* sensor = sensor_of(context, id)) {
     return within(sensor->body(), 5, index_in<sim::Sensor>(sensor->body().sensors().list(), sensor));
+  }
+  if (const sim::Tendon* tendon = object_of<sim::Tendon>(context, id)) {
+    return within(tendon->body(), 6, index_in(world.tendons().list(), tendon));
   }
   if (const sim::BehaviorGroup* group = group_of(context, id)) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();

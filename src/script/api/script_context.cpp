@@ -125,10 +125,9 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &sim::Body::table() || table == &sim::Shape::table() || table == &sim::Gear::table())
     return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
-  if (table == &sim::Part::table() || table == &sim::Joint::table() || table == &sim::Motor::table() ||
-      behavior_of(c, id) != nullptr || sensor_of(c, id) != nullptr) {
-    return fmt::format("{} '{}/{}'", table->name(), store.name(store.parent(store.parent(id))), name);
-  }
+  const NodeId owner = store.parent(store.parent(id));
+  if (object_of<sim::Body>(c, owner) != nullptr)
+    return fmt::format("{} '{}/{}'", table->name(), store.name(owner), name);
   return "params";
 }
 

@@ -10,6 +10,7 @@
 #include "sim/gears/gear.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
+#include "sim/tendons/tendon.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -80,7 +81,7 @@ std::int32_t class_table(void* c, std::int32_t which) {
                                          &sim::Joint::table(),   &sim::Motor::table(),  &sim::Shape::table(),
                                          &sim::Visuals::table(), &sim::Camera::table(), &sim::Appearance::table(),
                                          &sim::Gear::table(),    &sim::imu_table(),     &sim::range_finder_table(),
-                                         &sim::zone_table(),     &sim::touch_table()};
+                                         &sim::zone_table(),     &sim::touch_table(),   &sim::Tendon::table()};
   return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 

@@ -114,6 +114,79 @@ method("add_convex_mesh_shape", function(_, name, source, opts)
   return P.answered_handle()
 end)
 
+-- surfaces
+local function check_positive(value, subject)
+  if P.check_number(value, subject) <= 0 then fail("%s must be above 0, not %s", subject, describe(value)) end
+  return value
+end
+local function check_side(value, subject)
+  P.check_number(value, subject)
+  if value % 1 ~= 0 or value < 2 or value > 1024 then fail("%s is 2 .. 1024, not %s", subject, describe(value)) end
+  return value
+end
+
+method("add_mesh_shape", function(_, name, file, opts)
+  P.check_text(name, "add_mesh_shape: the name")
+  P.check_text(file, "add_mesh_shape: the file's name")
+  P.check_opts({ setters = {} }, opts, { scale = true }, "add_mesh_shape")
+  local scale = opts and opts.scale or 1
+  if type(scale) == "number" then scale = P.V(scale, scale, scale) end
+  scale = P.check_vec3(scale, "add_mesh_shape: scale")
+  for _, x in ipairs { scale.x, scale.y, scale.z } do
+    if P.check_number(x, "add_mesh_shape: scale") == 0 then fail("add_mesh_shape: scale must not be 0") end
+  end
+  P.handle_result(api.add_mesh_surface(ctx, name, #name, file, #file, scale.x, scale.y, scale.z))
+  return P.answered_handle()
+end)
+
+local heightfield_opts = { size = true, rows = true, columns = true, heights = true, image = true, height = true }
+-- Fills an array with heights in rows from -y to +y, each from -x to +x.
+local function heights_of(source, width, length, columns, rows)
+  local subject = "add_heightfield_shape: height "
+  local values = ffi.new("double[?]", rows * columns)
+  if type(source) == "table" and #source ~= rows * columns then
+    fail("add_heightfield_shape: %d rows and %d columns need %d heights, not %d", rows, columns, rows * columns, #source)
+  elseif type(source) ~= "table" and type(source) ~= "function" then
+    fail("add_heightfield_shape: heights is a list or a function(x, y), not %s", describe(source))
+  end
+  for row = 0, rows - 1 do
+    for column = 0, columns - 1 do
+      local i = row * columns + column
+      local z
+      if type(source) == "table" then
+        z = source[i + 1]
+      else
+        z = source(width * (column / (columns - 1) - 0.5), length * (row / (rows - 1) - 0.5))
+      end
+      values[i] = P.check_number(z, subject .. (i + 1))
+    end
+  end
+  return values
+end
+method("add_heightfield_shape", function(_, name, opts)
+  local subject = "add_heightfield_shape"
+  P.check_text(name, subject .. ": the name")
+  if type(opts) ~= "table" then fail("%s takes a table such as { size = { 10, 10 }, … }, not %s", subject, describe(opts)) end
+  P.check_opts({ setters = {} }, opts, heightfield_opts, subject)
+  if type(opts.size) ~= "table" then fail("%s: size is { x, y } in meters, not %s", subject, describe(opts.size)) end
+  local width = check_positive(opts.size[1], subject .. ": size x")
+  local length = check_positive(opts.size[2], subject .. ": size y")
+  if opts.image ~= nil then
+    if opts.heights ~= nil or opts.rows ~= nil or opts.columns ~= nil then
+      fail("%s: an image has rows, columns and heights of its own; remove one or the other", subject)
+    end
+    P.check_text(opts.image, subject .. ": image")
+    local height = check_positive(opts.height, subject .. ": height (of white, m)")
+    P.handle_result(api.add_heightfield_image(ctx, name, #name, width, length, opts.image, #opts.image, height))
+    return P.answered_handle()
+  end
+  if opts.height ~= nil then fail("%s: height is that of white in an image; write image = \"…\", or remove it", subject) end
+  local rows, columns = check_side(opts.rows, subject .. ": rows"), check_side(opts.columns, subject .. ": columns")
+  local heights = heights_of(opts.heights, width, length, columns, rows)
+  P.handle_result(api.add_heightfield(ctx, name, #name, width, length, columns, rows, heights))
+  return P.answered_handle()
+end)
+
 -- model files: URDF and MJCF
 local urdf_own = { name = true, fixed_base = true, keep_fixed = true, motors = true, pose = true, package_path = true, root = true,
   position = true, rotation = true }

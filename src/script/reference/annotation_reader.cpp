@@ -9,6 +9,7 @@
 #include "sim/gears/gear.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
+#include "sim/tendons/tendon.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -155,11 +156,11 @@ AnnotatedPage& open_page(std::vector<AnnotatedPage>& pages, BlockReader& reader)
 }  // namespace
 
 const PropertyTable& annotated_class(std::string_view name) {
-  const std::array<const PropertyTable*, 14> classes = {
+  const std::array<const PropertyTable*, 15> classes = {
       &sim::World::table(),      &sim::Body::table(),  &sim::Part::table(),    &sim::Joint::table(),
       &sim::Motor::table(),      &sim::Shape::table(), &sim::Visuals::table(), &sim::Camera::table(),
       &sim::Appearance::table(), &sim::Gear::table(),  &sim::imu_table(),      &sim::range_finder_table(),
-      &sim::zone_table(),        &sim::touch_table()};
+      &sim::zone_table(),        &sim::touch_table(),  &sim::Tendon::table()};
   for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }

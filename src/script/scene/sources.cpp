@@ -121,6 +121,16 @@ Result<std::shared_ptr<const model::MeshModel>> Sources::mesh(const std::string&
   return meshes_[key] = *mesh;
 }
 
+Result<std::shared_ptr<const model::Image>> Sources::image(const std::string& path) {
+  contents_.try_emplace(path, 0);
+  const auto* before = find_known(&Sources::images_, path);
+  model::ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
+  Result<std::shared_ptr<const model::Image>> image = before ? *before : library.meshes().image(path);
+  if (!image) return image;
+  contents_[path] = (*image)->content_hash;
+  return images_[path] = *image;
+}
+
 SourcesRead Sources::read() const {
   SourcesRead read{found_, texts_, {}, {}};
   if (!added_.empty()) read.texts[kAddedText] = added_;

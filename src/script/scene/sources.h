@@ -26,7 +26,7 @@ struct SourcesRead {
   std::map<std::string, std::string> found;   ///< Search requests and the resulting paths.
   std::map<std::string, std::string> texts;   ///< Script texts by path.
   std::map<std::string, std::string> meshes;  ///< As FileSet::found.
-  std::vector<std::string> files;             ///< Models and meshes.
+  std::vector<std::string> files;             ///< Models, meshes and images.
 };
 
 class Sources {
@@ -53,6 +53,7 @@ class Sources {
   const std::string& added() const { return added_; }
   Result<std::shared_ptr<const model::BodyModel>> model(const std::string& path, const model::ImportOptions& options);
   Result<std::shared_ptr<const model::MeshModel>> mesh(const std::string& path, const Vec3& scale);
+  Result<std::shared_ptr<const model::Image>> image(const std::string& path);
 
   /// Ends the run: drops the reference to the earlier run.
   void close() { earlier_ = nullptr; }
@@ -77,6 +78,7 @@ class Sources {
   std::map<std::string, std::uint64_t> contents_;  // hashes of all files read, by path; 0: unknown
   std::map<std::string, std::shared_ptr<const model::BodyModel>> models_;
   std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes_;
+  std::map<std::string, std::shared_ptr<const model::Image>> images_;
   std::vector<std::string> tried_;
 };
 

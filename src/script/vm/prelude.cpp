@@ -11,7 +11,7 @@
 namespace limber::script {
 
 std::span<const std::string_view> prelude_order() {
-  static constexpr std::array<std::string_view, 33> kOrder{"core.lua",
+  static constexpr std::array<std::string_view, 34> kOrder{"core.lua",
                                                            "library.lua",
                                                            "syntax.lua",
                                                            "compiled.lua",
@@ -26,6 +26,7 @@ std::span<const std::string_view> prelude_order() {
                                                            "behaviors/handles.lua",
                                                            "sim.lua",
                                                            "sensors.lua",
+                                                           "tendons.lua",
                                                            "visuals.lua",
                                                            "callbacks.lua",
                                                            "osc.lua",

@@ -1,6 +1,8 @@
 // AwakeObjects: one pass over the objects and one over the joints.
 #include "sim/bullet/awake_objects.h"
 
+#include "sim/bullet/joints/tendon_constraint.h"
+
 namespace limber::sim::bullet {
 
 void AwakeObjects::collect(const btAlignedObjectArray<btRigidBody*>& movable, const btCollisionObjectArray& objects,
@@ -23,12 +25,17 @@ void AwakeObjects::collect(const btAlignedObjectArray<btRigidBody*>& movable, co
   body_of_joint_.resizeNoInitialize(0);
   joints_.resizeNoInitialize(0);
   for (int i = 0; i < joints.size(); ++i) {
-    const btRigidBody& a = joints[i]->getRigidBodyA();
-    const btRigidBody& b = joints[i]->getRigidBodyB();
-    if (is_asleep(a) || is_asleep(b)) continue;
+    bool asleep = false;
+    int body = -1;
+    for_each_link(*joints[i], [&](const btRigidBody& a, const btRigidBody& b) {
+      asleep = asleep || is_asleep(a) || is_asleep(b);
+      if (body < 0) body = index_of(a) >= 0 ? index_of(a) : index_of(b);
+    });
+    if (asleep) continue;
     joints_.push_back(joints[i]);
-    body_of_joint_.push_back(index_of(a) >= 0 ? index_of(a) : index_of(b));
-    joined_.unite(index_of(a), index_of(b));
+    body_of_joint_.push_back(body);
+    for_each_link(*joints[i],
+                  [&](const btRigidBody& a, const btRigidBody& b) { joined_.unite(index_of(a), index_of(b)); });
   }
   valid_ = true;
 }

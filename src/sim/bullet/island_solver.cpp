@@ -60,14 +60,14 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
   if (use_direct_) {
     m_tmpSolverNonContactConstraintPool.resizeNoInitialize(0);
     joints_.resizeNoInitialize(0);
-    gears_swept_ = false;
+    couplings_swept_ = false;
     return;
   }
   for (int i = 0; i < count; ++i) {
     if (constraints[i]->getConstraintType() != JointConstraint::kType || !constraints[i]->isEnabled()) continue;
     plan(*static_cast<JointConstraint*>(constraints[i]), info);
   }
-  plan_gears(constraints, count, info);
+  plan_couplings(constraints, count, info);
   convert_constraints(constraints, count, info);
 }
 
@@ -75,36 +75,40 @@ void IslandSolver::convertJoints(btTypedConstraint** constraints, int count, con
 // the iterative solver supports.
 bool IslandSolver::plan_direct(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
   for (int i = 0; i < count; ++i) {
-    if (constraints[i]->getConstraintType() != JointConstraint::kType && !is_gear(*constraints[i])) return false;
+    if (constraints[i]->getConstraintType() != JointConstraint::kType && !is_coupled(*constraints[i])) return false;
   }
   direct_.begin();
   for (int i = 0; i < count; ++i) {
-    if (is_gear(*constraints[i])) continue;
+    if (is_coupled(*constraints[i])) continue;
     JointConstraint& joint = static_cast<JointConstraint&>(*constraints[i]);
     if (!joint.isEnabled()) continue;
     plan(joint, info);
     direct_.add_joint(joint, solver_body(joint.getRigidBodyA(), info.m_timeStep),
                       solver_body(joint.getRigidBodyB(), info.m_timeStep));
   }
-  plan_gears(constraints, count, info);
-  for (const GearRow& row : gears_) direct_.add_gear(*row.gear, row.bodies);
-  return direct_.joint_count() > 0 || contacts_direct_;
+  plan_couplings(constraints, count, info);
+  for (const Coupling& coupling : couplings_) {
+    direct_.add_coupling(*coupling.constraint);
+    for (int i = 0; i < coupling.count; ++i) direct_.add_coupled_body(sides_[coupling.first + i].body);
+  }
+  return direct_.joint_count() > 0 || !couplings_.empty() || contacts_direct_;
 }
 
-// Plans the gears, after all joints. A gear that can't move anything has no row.
-void IslandSolver::plan_gears(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
-  gears_.clear();
+// Plans the gears and tendons, after all joints. One that can't move anything has no row.
+void IslandSolver::plan_couplings(btTypedConstraint** constraints, int count, const btContactSolverInfo& info) {
+  couplings_.clear();
+  sides_.clear();
   for (int i = 0; i < count; ++i) {
-    if (!is_gear(*constraints[i]) || !constraints[i]->isEnabled()) continue;
-    auto& gear = static_cast<GearConstraint&>(*constraints[i]);
-    gear.plan(info.m_timeStep);
-    if (!(gear.row().mobility > 0)) continue;
-    GearRow& row = gears_.emplace_back();
-    row.gear = &gear;
-    row.count = gear.jacobians().size();
-    for (int k = 0; k < row.count; ++k) {
-      row.bodies[k] = solver_body(*gear.jacobians()[k].body, info.m_timeStep);
-    }
+    if (!is_coupled(*constraints[i]) || !constraints[i]->isEnabled()) continue;
+    auto& constraint = static_cast<CoupledConstraint&>(*constraints[i]);
+    constraint.plan(info.m_timeStep);
+    if (!(constraint.row().mobility > 0)) continue;
+    Coupling& coupling = couplings_.emplace_back();
+    coupling.constraint = &constraint;
+    coupling.first = sides_.size();
+    coupling.count = constraint.jacobians().size();
+    for (const CoupledConstraint::BodyJacobian& jacobian : constraint.jacobians())
+      sides_.emplace_back().body = solver_body(*jacobian.body, info.m_timeStep);
   }
 }
 
@@ -144,7 +148,8 @@ void IslandSolver::convert_constraints(btTypedConstraint** constraints, int coun
     size = {0, 0};
     if (!constraints[i]->isEnabled()) continue;
     if (constraints[i]->getConstraintType() == JointConstraint::kType) {
-      size.m_numConstraintRows = static_cast<JointConstraint*>(constraints[i])->rows().size();
+      const auto& joint = static_cast<const JointConstraint&>(*constraints[i]);
+      size.m_numConstraintRows = joint.ball_limits().count() + joint.rows().size();
     } else {
       constraints[i]->getInfo1(&size);
     }
@@ -168,19 +173,19 @@ void IslandSolver::convert_constraints(btTypedConstraint** constraints, int coun
       add_rows(first, size.m_numConstraintRows, false, 0);
     }
   }
-  convert_gears(info);
+  convert_couplings(info);
 }
 
-// Sets up the rows of gears for the sweeps, after those of all joints.
-void IslandSolver::convert_gears(const btContactSolverInfo& info) {
-  gears_swept_ = true;
-  for (GearRow& row : gears_) {
-    const GearConstraint::Row& planned = row.gear->row();
+// Sets up the rows of gears and tendons for the sweeps, after those of all joints.
+void IslandSolver::convert_couplings(const btContactSolverInfo& info) {
+  couplings_swept_ = true;
+  for (Coupling& coupling : couplings_) {
+    const CoupledConstraint::Row& planned = coupling.constraint->row();
     btScalar rate = 0;
-    for (int k = 0; k < row.count; ++k) {
-      GearSide& side = row.sides[k];
-      const GearConstraint::BodyJacobian& from = row.gear->jacobians()[k];
-      const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[k]];
+    for (int k = 0; k < coupling.count; ++k) {
+      CoupledSide& side = sides_[coupling.first + k];
+      const CoupledConstraint::BodyJacobian& from = coupling.constraint->jacobians()[k];
+      const btSolverBody& body = m_tmpSolverBodyPool[side.body];
       side.linear = from.linear;
       side.angular = from.angular;
       side.linear_per_impulse = from.linear * from.body->getInvMass() * from.body->getLinearFactor();
@@ -188,36 +193,39 @@ void IslandSolver::convert_gears(const btContactSolverInfo& info) {
       rate += side.linear.dot(body.m_linearVelocity + body.m_externalForceImpulse) +
               side.angular.dot(body.m_angularVelocity + body.m_externalTorqueImpulse);
     }
-    row.target_rate = to_scalar(planned.velocity) - rate;
-    row.softness = to_scalar(planned.softness);
-    row.step = to_scalar(1 / (planned.mobility + planned.softness));
-    row.bound = to_scalar(std::min(planned.bound, static_cast<double>(SIMD_INFINITY)));
-    row.impulse = std::clamp(to_scalar(row.gear->warm_impulse()), -row.bound, row.bound);
-    apply_gear_impulse(row, row.impulse);
+    coupling.target_rate = to_scalar(planned.velocity) - rate;
+    coupling.softness = to_scalar(planned.softness);
+    coupling.step = to_scalar(1 / (planned.mobility + planned.softness));
+    const auto infinity = static_cast<double>(SIMD_INFINITY);
+    coupling.lower = to_scalar(std::max(planned.lower, -infinity));
+    coupling.upper = to_scalar(std::min(planned.upper, infinity));
+    coupling.impulse = std::clamp(to_scalar(coupling.constraint->warm_impulse()), coupling.lower, coupling.upper);
+    apply_coupled_impulse(coupling, coupling.impulse);
     m_maxOverrideNumSolverIterations = std::max(info.m_numIterations, m_maxOverrideNumSolverIterations);
   }
 }
 
 // Returns the squared change of the impulse.
-btScalar IslandSolver::sweep_gear(int gear) {
-  GearRow& row = gears_[gear];
+btScalar IslandSolver::sweep_coupling(int coupling) {
+  Coupling& row = couplings_[coupling];
   btScalar residual = row.target_rate - row.softness * row.impulse;
   for (int k = 0; k < row.count; ++k) {
-    const GearSide& side = row.sides[k];
-    const btSolverBody& body = m_tmpSolverBodyPool[row.bodies[k]];
+    const CoupledSide& side = sides_[row.first + k];
+    const btSolverBody& body = m_tmpSolverBodyPool[side.body];
     residual -= side.linear.dot(body.m_deltaLinearVelocity) + side.angular.dot(body.m_deltaAngularVelocity);
   }
-  const btScalar after = std::clamp(row.impulse + residual * row.step, -row.bound, row.bound);
+  const btScalar after = std::clamp(row.impulse + residual * row.step, row.lower, row.upper);
   const btScalar change = after - std::exchange(row.impulse, after);
-  apply_gear_impulse(row, change);
+  apply_coupled_impulse(row, change);
   return change * change;
 }
 
-void IslandSolver::apply_gear_impulse(const GearRow& row, btScalar impulse) {
-  for (int k = 0; k < row.count; ++k) {
-    btSolverBody& body = m_tmpSolverBodyPool[row.bodies[k]];
-    body.m_deltaLinearVelocity += row.sides[k].linear_per_impulse * impulse;
-    body.m_deltaAngularVelocity += row.sides[k].angular_per_impulse * impulse;
+void IslandSolver::apply_coupled_impulse(const Coupling& coupling, btScalar impulse) {
+  for (int k = 0; k < coupling.count; ++k) {
+    const CoupledSide& side = sides_[coupling.first + k];
+    btSolverBody& body = m_tmpSolverBodyPool[side.body];
+    body.m_deltaLinearVelocity += side.linear_per_impulse * impulse;
+    body.m_deltaAngularVelocity += side.angular_per_impulse * impulse;
   }
 }
 
@@ -289,11 +297,11 @@ void IslandSolver::convert_rows(JointConstraint& joint, btSolverConstraint* rows
   if (info.m_numIterations > m_maxOverrideNumSolverIterations) m_maxOverrideNumSolverIterations = info.m_numIterations;
 }
 
-// One sweep over gears, then over all joints, so that locks take precedence: single rows first, then blocks. Returns
-// the largest squared change of an impulse.
+// One sweep over gears and tendons, then over all joints, so that locks take precedence: single rows first, then
+// blocks. Returns the largest squared change of an impulse.
 btScalar IslandSolver::sweep_joints() {
   btScalar largest = 0;
-  for (int i = 0; i < gears_.size(); ++i) largest = std::max(largest, sweep_gear(i));
+  for (int i = 0; i < couplings_.size(); ++i) largest = std::max(largest, sweep_coupling(i));
   for (int i = 0; i < joints_.size(); ++i) {
     SweptJoint& joint = joints_[i];
     btSolverBody& a = m_tmpSolverBodyPool[joint.body_a];
@@ -319,10 +327,10 @@ btScalar IslandSolver::solveGroupCacheFriendlyFinish(btCollisionObject** bodies,
                                                      const btContactSolverInfo& info) {
   save_rolling_friction();
   for (int i = 0; i < joints_.size(); ++i) joints_[i].block.finish();
-  for (GearRow& row : gears_) {
-    if (gears_swept_) row.gear->set_impulse(static_cast<double>(row.impulse));
+  for (const Coupling& coupling : couplings_) {
+    if (couplings_swept_) coupling.constraint->set_impulse(static_cast<double>(coupling.impulse));
   }
-  gears_.clear();
+  couplings_.clear();
   const int count = m_tmpSolverNonContactConstraintPool.size();
   for (int first = 0, last = 0; first < count; first = last) {
     auto* joint = static_cast<btTypedConstraint*>(m_tmpSolverNonContactConstraintPool[first].m_originalContactPoint);

@@ -4,7 +4,7 @@
 
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/contact_solver.h"
-#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/coupled_constraint.h"
 #include "sim/bullet/joints/joint_block.h"
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/solver/direct_solver.h"
@@ -57,8 +57,8 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   void convert_constraints(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
   void convert_rows(JointConstraint& joint, btSolverConstraint* rows, int count, const btContactSolverInfo& info);
   JointBlock& add_rows(const btSolverConstraint* rows, int count, bool bounded, int locked);
-  void plan_gears(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
-  void convert_gears(const btContactSolverInfo& info);
+  void plan_couplings(btTypedConstraint** constraints, int count, const btContactSolverInfo& info);
+  void convert_couplings(const btContactSolverInfo& info);
   btScalar sweep_joints();
   void convert_contact(btPersistentManifold& manifold, const btContactSolverInfo& info);
   void add_body_motion(btSolverConstraint& normal, const btManifoldPoint& point, const btVector3& slip,
@@ -69,7 +69,7 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   };
   void convert_rolling(btManifoldPoint& point, int contact, const ContactBodies& bodies, btScalar last_normal_impulse,
                        const btVector3& surface_spin);
-  btScalar sweep_gear(int gear);
+  btScalar sweep_coupling(int coupling);
   btScalar sweep_rolling();
   void save_rolling_friction();
 
@@ -80,22 +80,22 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
     int body_b;
     JointBlock block;
   };
-  struct GearSide {  // Jacobian with respect to a body, and the body's velocity change per impulse
+  struct CoupledSide {  // Jacobian with respect to a body, and the body's velocity change per impulse
+    int body;
     btVector3 linear, angular;
     btVector3 linear_per_impulse, angular_per_impulse;
   };
-  struct GearRow {
-    GearConstraint* gear;
-    solver::FixedArray<int, 4> bodies;
-    solver::FixedArray<GearSide, 4> sides;
+  struct Coupling {  // a gear or tendon
+    CoupledConstraint* constraint;
+    int first;  // its sides, in sides_
     int count;
     btScalar target_rate;  // rate that is missing without the impulses of this step
     btScalar softness;
     btScalar step;  // impulse per missing rate
-    btScalar bound;
+    btScalar lower, upper;
     btScalar impulse;
   };
-  void apply_gear_impulse(const GearRow& row, btScalar impulse);
+  void apply_coupled_impulse(const Coupling& coupling, btScalar impulse);
 
   struct MovingStatic {
     const btRigidBody* body;
@@ -103,8 +103,9 @@ class IslandSolver : public btSequentialImpulseConstraintSolver {
   };
   btAlignedObjectArray<MovingStatic> moving_statics_;  // of the present island
 
-  solver::IndexedArray<GearRow> gears_;  // of the present island
-  bool gears_swept_ = false;
+  solver::IndexedArray<Coupling> couplings_;  // of the present island
+  solver::IndexedArray<CoupledSide> sides_;
+  bool couplings_swept_ = false;
   solver::IndexedArray<JointRow> planned_;  // of all joints of the island, in their order
   int planned_count_ = 0;
   btAlignedObjectArray<SweptJoint> joints_;

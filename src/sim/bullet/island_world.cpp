@@ -7,7 +7,7 @@
 #include "base/memory/prefetch.h"
 #include "sim/bullet/continuous_collision.h"
 #include "sim/bullet/island_solver.h"
-#include "sim/bullet/joints/gear_constraint.h"
+#include "sim/bullet/joints/coupled_constraint.h"
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/bullet/rotation_step.h"
 #include "sim/collision/dispatcher.h"
@@ -32,7 +32,7 @@ void disable_bullet_gyroscopic_torque(btRigidBody& body) {
 
 void end_tick(btTypedConstraint& joint) {
   if (joint.getConstraintType() == JointConstraint::kType) static_cast<JointConstraint&>(joint).end_tick();
-  if (is_gear(joint)) static_cast<GearConstraint&>(joint).end_tick();
+  if (is_coupled(joint)) static_cast<CoupledConstraint&>(joint).end_tick();
 }
 
 // Advances the predicted angles of a joint with fast parts (rotation_step.h); `refresh`: also reads the joint's pose.

@@ -5,6 +5,7 @@
 
 #include "base/memory/prefetch.h"
 #include "sim/bullet/joints/joint_constraint.h"
+#include "sim/bullet/joints/tendon_constraint.h"
 #include "sim/collision/dispatcher.h"
 
 namespace limber::sim::bullet {
@@ -179,7 +180,7 @@ void SleepTracker::queue_touched_by_moved() {
                      *static_cast<const btCollisionObject*>(pairs[i].m_pProxy1->m_clientObject));
   }
   for (int i = 0; i < world_.getNumConstraints(); ++i) {
-    queue_if_touched(world_.getConstraint(i)->getRigidBodyA(), world_.getConstraint(i)->getRigidBodyB());
+    for_each_link(*world_.getConstraint(i), queue_if_touched);
   }
 }
 
@@ -290,7 +291,9 @@ void SleepTracker::find_islands(const AwakeObjects& awake) {
         link(awake.index_of(*manifold.getBody0()), awake.index_of(*manifold.getBody1()));
     }
     for (int i = 0; i < awake.joints().size(); ++i) {
-      link(awake.index_of(awake.joints()[i]->getRigidBodyA()), awake.index_of(awake.joints()[i]->getRigidBodyB()));
+      bullet::for_each_link(*awake.joints()[i], [&](const btRigidBody& a, const btRigidBody& b) {
+        link(awake.index_of(a), awake.index_of(b));
+      });
     }
   };
   for_each_link([this](int a, int b) { connected_.unite(a, b); });
@@ -299,7 +302,7 @@ void SleepTracker::find_islands(const AwakeObjects& awake) {
   });
   for (int i = 0; i < awake.joints().size(); ++i) {
     const btTypedConstraint& joint = *awake.joints()[i];
-    const int index = std::max(awake.index_of(joint.getRigidBodyA()), awake.index_of(joint.getRigidBodyB()));
+    const int index = awake.body_of_joint(i);
     if (index < 0) continue;
     jointed_[connected_.root(index)] = 1;
     if (joint.getConstraintType() != JointConstraint::kType) continue;

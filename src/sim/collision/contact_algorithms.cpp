@@ -10,42 +10,16 @@
 
 #include "sim/collision/box_axes.h"
 #include "sim/collision/closest_points.h"
+#include "sim/collision/contact_clipping.h"
 #include "sim/collision/contact_features.h"
 #include "sim/collision/manifold_builder.h"
+#include "sim/collision/pair_algorithm.h"
+#include "sim/collision/surface_algorithm.h"
+
+#include <BulletCollision/CollisionDispatch/btConvexConcaveCollisionAlgorithm.h>
 
 namespace limber::sim::collision {
 namespace {
-
-/// A face is the reference face if its normal is within 1.1 degrees of the contact normal.
-constexpr btScalar kMinAlignment = 0.9998F;
-/// Sine of the largest angle between edges that count as parallel.
-constexpr btScalar kParallelSine = 0.02F;
-/// Tolerance outside of the reference face's sides, m.
-constexpr btScalar kClipSlack = 1e-5F;
-
-/// Base class: owns the manifold of a pair.
-class PairAlgorithm : public btCollisionAlgorithm {
- public:
-  PairAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,
-                const btCollisionObjectWrapper* b)
-      : btCollisionAlgorithm(info),
-        manifold_(info.m_dispatcher1->getNewManifold(a->getCollisionObject(), b->getCollisionObject())) {}
-  ~PairAlgorithm() override { m_dispatcher->releaseManifold(manifold_); }
-  PairAlgorithm(const PairAlgorithm&) = delete;
-  PairAlgorithm& operator=(const PairAlgorithm&) = delete;
-
-  btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
-                                 btManifoldResult*) override {
-    return 1;
-  }
-  void getAllContactManifolds(btManifoldArray& manifolds) override { manifolds.push_back(manifold_); }
-
- protected:
-  btPersistentManifold& manifold() { return *manifold_; }
-
- private:
-  btPersistentManifold* manifold_;
-};
 
 class PlaneAlgorithm : public PairAlgorithm {
  public:
@@ -79,78 +53,6 @@ class PlaneAlgorithm : public PairAlgorithm {
   bool plane_first_;
 };
 
-// Clips a polygon, segment or point to the inner side of the plane through `from` with the normal `outward`.
-void clip_by_plane(const ContactFeature& whole, const btVector3& from, const btVector3& outward, ContactFeature& part) {
-  part.count = 0;
-  const int sides = whole.count > 2 ? whole.count : whole.count - 1;
-  btScalar p_out = outward.dot(whole[0] - from) - kClipSlack;
-  if (sides == 0 && p_out <= 0) part.add(whole[0]);
-  for (int i = 0; i < sides; ++i) {
-    const btVector3& p = whole[i];
-    const btVector3& q = whole[i + 1 < whole.count ? i + 1 : 0];
-    const btScalar q_out = outward.dot(q - from) - kClipSlack;
-    if (p_out <= 0) part.add(p);
-    if ((p_out <= 0) != (q_out <= 0)) part.add(p + (q - p) * (p_out / (p_out - q_out)));
-    if (whole.count == 2 && q_out <= 0) part.add(q);
-    p_out = q_out;
-  }
-}
-
-// Clips a polygon, segment or point against the sides of the reference face. `incident` is overwritten; the result is
-// `incident` or `spare`.
-const ContactFeature& clip(const ContactFeature& reference, ContactFeature& incident, ContactFeature& spare) {
-  spare.normal = incident.normal;
-  spare.margin = incident.margin;
-  ContactFeature* whole = &incident;
-  ContactFeature* part = &spare;
-  for (int side = 0; side < reference.count && whole->count > 0; ++side) {
-    const btVector3& from = reference[side];
-    const btVector3 edge = reference[side + 1 < reference.count ? side + 1 : 0] - from;
-    const btScalar length = edge.length();
-    if (!(length > SIMD_EPSILON)) continue;
-    clip_by_plane(*whole, from, edge.cross(reference.normal) / length, *part);
-    std::swap(whole, part);
-  }
-  return *whole;
-}
-
-// Adds the ends of the stretch along which two parallel segments touch; returns false if they aren't parallel.
-bool add_parallel_edges(const ContactFeature& a, const ContactFeature& b, const btVector3& normal,
-                        ManifoldBuilder& points) {
-  const btVector3 edge_a = a[1] - a[0];
-  const btVector3 edge_b = b[1] - b[0];
-  const btScalar length = edge_b.length();
-  if (!(length > SIMD_EPSILON) || edge_a.cross(edge_b).length() > kParallelSine * edge_a.length() * length)
-    return false;
-  const btVector3 along = edge_b / length;
-  ContactFeature from_start;
-  ContactFeature within;
-  clip_by_plane(a, b[0], -along, from_start);
-  clip_by_plane(from_start, b[1], along, within);
-  for (int i = 0; i < within.count; ++i) {
-    const btVector3 on_a = within[i] - normal * a.margin;
-    const btVector3 on_b = b[0] + along * along.dot(within[i] - b[0]) + normal * b.margin;
-    points.add(on_b, normal, normal.dot(on_a - on_b));
-  }
-  return !points.empty();
-}
-
-// Adds the points of the incident feature near the reference face. `flipped`: the reference face is body A's.
-void add_points(const ContactFeature& reference, ContactFeature& incident, bool flipped, ManifoldBuilder& points) {
-  ContactFeature spare;
-  const ContactFeature& clipped = clip(reference, incident, spare);
-  const btVector3& normal = reference.normal;
-  for (int i = 0; i < clipped.count; ++i) {
-    const btVector3 point = clipped[i] - normal * clipped.margin;
-    const btScalar distance = normal.dot(point - reference[0]) - reference.margin;
-    if (flipped) {
-      points.add(point, -normal, distance);
-    } else {
-      points.add(point - normal * distance, normal, distance);
-    }
-  }
-}
-
 class BoxAlgorithm : public PairAlgorithm {
  public:
   using PairAlgorithm::PairAlgorithm;
@@ -181,7 +83,7 @@ class BoxAlgorithm : public PairAlgorithm {
       find_feature(first ? shape_b : shape_a, -outward * incident_pose.getBasis(), incident);
       reference.transform(reference_pose);
       incident.transform(incident_pose);
-      add_points(reference, incident, first, points);
+      add_face_points(reference, incident, first, points);
     }
     points.write();
   }
@@ -251,26 +153,22 @@ class ConvexAlgorithm : public PairAlgorithm {
                         ManifoldBuilder& points) {
     ContactFeature feature_a;
     ContactFeature feature_b;
-    find_world_feature(a, -normal, feature_a);
-    find_world_feature(b, normal, feature_b);
+    for (const bool first : {true, false}) {
+      const btCollisionObjectWrapper& object = first ? a : b;
+      find_world_feature(static_cast<const btConvexShape&>(*object.getCollisionShape()), object.getWorldTransform(),
+                         first ? -normal : normal, first ? feature_a : feature_b);
+    }
     if (feature_a.count == 2 && feature_b.count == 2) return add_parallel_edges(feature_a, feature_b, normal, points);
     const btScalar alignment_a = feature_a.count > 2 ? -normal.dot(feature_a.normal) : btScalar(0);
     const btScalar alignment_b = feature_b.count > 2 ? normal.dot(feature_b.normal) : btScalar(0);
     if (std::max(alignment_a, alignment_b) < kMinAlignment) return false;
     const bool first = alignment_a > alignment_b + (1 - kMinAlignment);
     if (first || alignment_b < kMinAlignment) {
-      add_points(feature_a, feature_b, true, points);
+      add_face_points(feature_a, feature_b, true, points);
     } else {
-      add_points(feature_b, feature_a, false, points);
+      add_face_points(feature_b, feature_a, false, points);
     }
     return !points.empty();
-  }
-
-  static void find_world_feature(const btCollisionObjectWrapper& object, const btVector3& direction,
-                                 ContactFeature& feature) {
-    const btTransform& pose = object.getWorldTransform();
-    find_feature(static_cast<const btConvexShape&>(*object.getCollisionShape()), direction * pose.getBasis(), feature);
-    feature.transform(pose);
   }
 };
 
@@ -281,6 +179,8 @@ constexpr int kConvexShapes[] = {BOX_SHAPE_PROXYTYPE,     CONVEX_HULL_SHAPE_PROX
 
 template <class Algorithm, class... Args>
 btCollisionAlgorithm* create(btCollisionAlgorithmConstructionInfo& info, Args&&... args) {
+  // the largest algorithm of Bullet determines the size of the blocks
+  static_assert(sizeof(Algorithm) <= sizeof(btConvexConcaveCollisionAlgorithm));
   void* memory = info.m_dispatcher1->allocateCollisionAlgorithm(static_cast<int>(sizeof(Algorithm)));
   return new (memory) Algorithm(info, std::forward<Args>(args)...);
 }
@@ -290,6 +190,11 @@ btCollisionAlgorithm* create(btCollisionAlgorithmConstructionInfo& info, Args&&.
 btCollisionAlgorithm* ContactAlgorithms::CreatePlane::CreateCollisionAlgorithm(
     btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
   return create<PlaneAlgorithm>(info, a, b, m_swapped);
+}
+
+btCollisionAlgorithm* ContactAlgorithms::CreateSurface::CreateCollisionAlgorithm(
+    btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b) {
+  return create<SurfaceAlgorithm>(info, a, b, m_swapped);
 }
 
 btCollisionAlgorithm* ContactAlgorithms::CreateBox::CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
@@ -305,9 +210,12 @@ btCollisionAlgorithm* ContactAlgorithms::CreateConvex::CreateCollisionAlgorithm(
 
 void ContactAlgorithms::install(btCollisionDispatcher& dispatcher) {
   plane_convex_.m_swapped = true;
+  surface_convex_.m_swapped = true;
   for (const int convex : kConvexShapes) {
     dispatcher.registerCollisionCreateFunc(convex, STATIC_PLANE_PROXYTYPE, &convex_plane_);
     dispatcher.registerCollisionCreateFunc(STATIC_PLANE_PROXYTYPE, convex, &plane_convex_);
+    dispatcher.registerCollisionCreateFunc(convex, CUSTOM_CONCAVE_SHAPE_TYPE, &convex_surface_);
+    dispatcher.registerCollisionCreateFunc(CUSTOM_CONCAVE_SHAPE_TYPE, convex, &surface_convex_);
     for (const int other : kConvexShapes) dispatcher.registerCollisionCreateFunc(convex, other, &convex_convex_);
   }
   dispatcher.registerCollisionCreateFunc(BOX_SHAPE_PROXYTYPE, BOX_SHAPE_PROXYTYPE, &box_box_);

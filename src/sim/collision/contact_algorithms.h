@@ -1,5 +1,5 @@
-// Contact algorithms with complete contact manifolds in every step: convex shapes with planes, boxes with boxes, and
-// other convex shapes with each other.
+// Contact algorithms with complete contact manifolds in every step: convex shapes with planes and surfaces, boxes with
+// boxes, and other convex shapes with each other.
 #pragma once
 
 #include "sim/bullet/bullet.h"
@@ -20,6 +20,11 @@ class ContactAlgorithms {
                                                    const btCollisionObjectWrapper* a,
                                                    const btCollisionObjectWrapper* b) override;
   };
+  struct CreateSurface : btCollisionAlgorithmCreateFunc {
+    btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
+                                                   const btCollisionObjectWrapper* a,
+                                                   const btCollisionObjectWrapper* b) override;
+  };
   struct CreateBox : btCollisionAlgorithmCreateFunc {
     btCollisionAlgorithm* CreateCollisionAlgorithm(btCollisionAlgorithmConstructionInfo& info,
                                                    const btCollisionObjectWrapper* a,
@@ -33,6 +38,8 @@ class ContactAlgorithms {
 
   CreatePlane convex_plane_;
   CreatePlane plane_convex_;
+  CreateSurface convex_surface_;
+  CreateSurface surface_convex_;
   CreateBox box_box_;
   CreateConvex convex_convex_;
 };

@@ -29,6 +29,7 @@ class ManifoldBuilder {
   /// of B (negative: penetration). Ignored if the surfaces can't touch there within the step, or after kMaxCandidates.
   void add(const btVector3& point_on_b, const btVector3& normal, btScalar distance);
   bool empty() const { return count_ == 0; }
+  int count() const { return count_; }
   /// Writes the points to the manifold.
   void write();
 

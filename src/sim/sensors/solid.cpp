@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "model/mesh/hull.h"
+#include "model/mesh/surface.h"
 
 namespace limber::sim {
 
@@ -165,7 +166,13 @@ Solid::Solid(const model::PlacedShape& placed)
       half_ = {radius_, radius_, half_height_ + radius_};
       break;
     case model::ShapeKind::mesh:
-      if (placed.shape.mesh != nullptr) add_hull(*placed.shape.mesh);
+      if (placed.shape.surface != nullptr) {
+        surface_ = placed.shape.surface;
+        half_ = (surface_->high() - surface_->low()) / 2.0;
+        center_ = (surface_->high() + surface_->low()) / 2.0;
+      } else if (placed.shape.mesh != nullptr) {
+        add_hull(*placed.shape.mesh);
+      }
       break;
     default:
       half_ = {radius_, radius_, half_height_};
@@ -197,6 +204,10 @@ void Solid::add_hull(const model::MeshModel& mesh) {
 }
 
 std::optional<SolidHit> Solid::intersect(const Vec3& from, const Vec3& direction, double max) const {
+  if (surface_ != nullptr) {
+    const std::optional<model::SurfaceHit> hit = surface_->ray(from, direction, max);
+    return hit ? std::optional(SolidHit{hit->distance, hit->normal}) : std::nullopt;
+  }
   if (kind_ == model::ShapeKind::mesh) return intersect_hull(from, direction, max);
   FirstEntry entry(from, direction, max);
   switch (kind_) {
@@ -286,7 +297,7 @@ double Solid::signed_distance(const Vec3& point) const {
     case model::ShapeKind::cone:
       return cone_distance(rho, point.z, radius_, half_height_);
     case model::ShapeKind::mesh:
-      return hull_distance(point);
+      return surface_ != nullptr ? surface_->distance(point) : hull_distance(point);
     default:
       return kInfinity;
   }

@@ -1,4 +1,4 @@
-// Solid: a convex shape for rays and distances, in double precision and without Bullet's margins. [any]
+// Solid: a convex shape or a surface for rays and distances, in double precision and without Bullet's margins. [any]
 #pragma once
 
 #include <memory>
@@ -52,6 +52,7 @@ class Solid {
   double radius_;
   double half_height_;
   std::shared_ptr<const std::vector<Face>> faces_;  // of a hull
+  std::shared_ptr<const model::Surface> surface_;
 };
 
 }  // namespace limber::sim

@@ -2,9 +2,11 @@
 #include "sim/shapes/bounds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
+#include "model/mesh/surface.h"
 #include "sim/shapes/geometry.h"
 #include "sim/world/body.h"
 #include "sim/world/part.h"
@@ -45,6 +47,15 @@ Bounds bounds_of_points(std::span<const Vec3> points, const Pose& pose) {
   return bounds;
 }
 
+Bounds bounds_of_surface(const model::Surface& surface, const Pose& pose) {
+  std::array<Vec3, 8> corners;
+  for (unsigned i = 0; i < 8; i++) {
+    for (int axis = 0; axis < 3; axis++)
+      corners[i][axis] = (i >> axis & 1U) == 0 ? surface.low()[axis] : surface.high()[axis];
+  }
+  return bounds_of_points(corners, pose);
+}
+
 Bounds bounds_of_shapes(std::span<const model::PlacedShape> shapes, const Pose& pose) {
   Bounds bounds;
   for (const model::PlacedShape& placed : shapes) bounds.add(bounds_of(placed.shape, pose * placed.origin));
@@ -78,6 +89,7 @@ bool Bounds::overlaps(const Bounds& other) const {
 
 Bounds bounds_of(const model::ShapeModel& shape, const Pose& pose) {
   if (shape.kind == model::ShapeKind::plane || shape.kind == model::ShapeKind::compound) return {};
+  if (shape.surface != nullptr) return bounds_of_surface(*shape.surface, pose);
   if (shape.kind == model::ShapeKind::mesh)
     return shape.mesh == nullptr ? Bounds() : bounds_of_points(shape.mesh->hull, pose * shape.mesh_pose);
   Bounds bounds{pose.position, pose.position};

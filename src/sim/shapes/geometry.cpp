@@ -5,6 +5,7 @@
 
 #include "model/mesh/mass_properties.h"
 #include "sim/bullet/bullet.h"
+#include "sim/collision/surface_shape.h"
 #include "sim/shapes/ellipsoid_shape.h"
 
 namespace limber::sim {
@@ -76,7 +77,7 @@ void set_mass_properties(Geometry& geometry, const model::Inertial& inertial) {
 model::Inertial solid_inertial(const std::vector<model::PlacedShape>& shapes) {
   std::vector<model::Inertial> solids;
   for (const model::PlacedShape& placed : shapes) {
-    if (placed.shape.kind != model::ShapeKind::plane)
+    if (!model::is_ground(placed.shape))
       solids.push_back(model::transformed(model::unit_inertial_of(placed.shape), placed.origin));
   }
   return model::combined(solids);
@@ -89,8 +90,12 @@ void set_collision_shape(Geometry& geometry) {
   auto compound = std::make_shared<btCompoundShape>(shapes.size() > 4);
   for (const model::PlacedShape& placed : shapes) {
     const Pose at = to_center * placed.origin;
-    const bool mesh = placed.shape.kind == model::ShapeKind::mesh && placed.shape.mesh != nullptr;
-    std::shared_ptr<btCollisionShape> shape = mesh ? hull_shape(*placed.shape.mesh, at) : primitive_shape(placed.shape);
+    const bool surface = placed.shape.surface != nullptr;
+    const bool mesh = placed.shape.kind == model::ShapeKind::mesh && placed.shape.mesh != nullptr && !surface;
+    std::shared_ptr<btCollisionShape> shape = mesh ? hull_shape(*placed.shape.mesh, at)
+                                              : surface
+                                                  ? std::make_shared<collision::SurfaceShape>(placed.shape.surface)
+                                                  : primitive_shape(placed.shape);
     if (shape == nullptr) continue;
     if (placed.shape.mesh != nullptr) geometry.meshes.push_back(placed.shape.mesh);
     if (shapes.size() == 1 && (mesh || is_identity(at))) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/color.h"
+#include "model/mesh/surface.h"
 #include "sim/shapes/geometry.h"
 
 namespace limber::sim {
@@ -49,6 +50,12 @@ Result<void> check_lengths(const Vec3& values, std::string_view shape, std::stri
   return {};
 }
 
+Result<void> check_mesh(const model::ShapeModel& m) {
+  if (m.surface != nullptr) return m.surface->size() > 0 ? Result<void>() : Error{"its triangles have no area"};
+  if (m.mesh == nullptr || m.mesh->hull.size() < 4) return Error{"a convex mesh needs at least 4 points"};
+  return {};
+}
+
 Result<void> first_error(Result<void> a, Result<void> b) { return a ? b : a; }
 
 }  // namespace
@@ -77,8 +84,7 @@ Result<void> check_shape(const model::ShapeModel& m) {
     case model::ShapeKind::cone:
       return first_error(check_length(m.radius, "cone", "radius"), check_length(m.height, "cone", "height"));
     case model::ShapeKind::mesh:
-      if (m.mesh == nullptr || m.mesh->hull.size() < 4) return Error{"a convex mesh needs at least 4 points"};
-      return {};
+      return check_mesh(m);
     case model::ShapeKind::compound:
       return {};
   }
@@ -103,8 +109,10 @@ Result<void> Shape::add_child(const Shape& child, const Pose& origin) {
     return Error{fmt::format("shape '{}' is not a compound; create one with sim:add_compound_shape", name())};
   }
   if (&child == this) return Error{fmt::format("compound '{}' can't contain itself", name())};
-  if (child.model().kind == model::ShapeKind::plane)
-    return Error{fmt::format("compound '{}' can't contain a plane", name())};
+  if (model::is_ground(child.model())) {
+    return Error{fmt::format("compound '{}' can't contain a {}", name(),
+                             child.model().surface != nullptr ? "surface; make a part of it" : "plane")};
+  }
   if (children_.size() + child.placed().size() > 1000)
     return Error{fmt::format("compound '{}' can contain at most 1000 shapes", name())};
   for (model::PlacedShape placed : child.placed()) {

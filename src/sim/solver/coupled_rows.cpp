@@ -1,4 +1,4 @@
-// CoupledRows: converts contacts, loops, gears and deferred axes to rows.
+// CoupledRows: converts contacts, loops, gears, tendons, limits of ball joints and deferred axes to rows.
 #include "sim/solver/coupled_rows.h"
 
 #include <algorithm>
@@ -38,7 +38,8 @@ void CoupledRows::collect() {
   rows_.clear();
   collect_contacts();
   collect_loops();
-  collect_gears();
+  collect_couplings();
+  collect_ball_limits();
   fixed_count_ = rows_.size();
 }
 
@@ -79,46 +80,72 @@ void CoupledRows::collect_loops() {
     if (trees_.node_of_joint(i) >= 0) continue;
     loop_rows_[i] = rows_.size();
     for (const bullet::JointRow& row : joint.constraint->rows()) {
-      const bullet::AxisJacobian j = joint.constraint->pose().jacobian(row.axis);
-      CoupledRow out;
-      out.loop = true;
-      out.a = {trees_.node_of(joint.body_a), make_spatial(-j.linear, j.angular_a)};
-      out.b = {trees_.node_of(joint.body_b), make_spatial(j.linear, j.angular_b)};
-      out.target = static_cast<double>(row.velocity) - dot(out.a.jacobian, island_.velocity(joint.body_a)) -
-                   dot(out.b.jacobian, island_.velocity(joint.body_b));
-      out.mobility = body_mobility(island_.body(joint.body_a), out.a.jacobian) +
-                     body_mobility(island_.body(joint.body_b), out.b.jacobian);
-      out.softness = static_cast<double>(row.softness) + kMinSoftness * out.mobility;
-      out.lower = static_cast<double>(row.lower);
-      out.upper = static_cast<double>(row.upper);
-      rows_.push_back(out);
+      set_pair(rows_.emplace_back(), joint, joint.constraint->pose().jacobian(row.axis), row);
     }
   }
 }
 
-// Each gear is one row on up to four bodies.
-void CoupledRows::collect_gears() {
-  first_gear_ = rows_.size();
-  gear_jacobians_.clear();
-  for (const Island::Gear& gear : island_.gears) {
-    const bullet::GearConstraint::Row& row = gear.constraint->row();
+// Sets a row between the two bodies of a joint.
+void CoupledRows::set_pair(CoupledRow& row, const Island::Joint& joint, const bullet::AxisJacobian& jacobian,
+                           const bullet::JointRow& planned) {
+  row.loop = true;
+  row.a = {trees_.node_of(joint.body_a), make_spatial(-jacobian.linear, jacobian.angular_a)};
+  row.b = {trees_.node_of(joint.body_b), make_spatial(jacobian.linear, jacobian.angular_b)};
+  row.target = static_cast<double>(planned.velocity) - dot(row.a.jacobian, island_.velocity(joint.body_a)) -
+               dot(row.b.jacobian, island_.velocity(joint.body_b));
+  row.mobility = body_mobility(island_.body(joint.body_a), row.a.jacobian) +
+                 body_mobility(island_.body(joint.body_b), row.b.jacobian);
+  row.softness = static_cast<double>(planned.softness) + kMinSoftness * row.mobility;
+  row.lower = static_cast<double>(planned.lower);
+  row.upper = static_cast<double>(planned.upper);
+}
+
+// The axes of these rows are no axes of the trees.
+void CoupledRows::collect_ball_limits() {
+  ball_rows_.resize(island_.joints.size());
+  for (int i = 0; i < island_.joints.size(); ++i) {
+    const bullet::BallLimits& limits = island_.joints[i].constraint->ball_limits();
+    ball_rows_[i] = rows_.size();
+    for (int r = 0; r < limits.count(); ++r) {
+      CoupledRow& row = rows_.emplace_back();
+      set_pair(row, island_.joints[i], limits[r].jacobian(), limits[r].row);
+      row.ball = i;
+    }
+  }
+}
+
+// Each gear or tendon is one row.
+void CoupledRows::collect_couplings() {
+  first_coupling_ = rows_.size();
+  extra_jacobians_.clear();
+  extra_start_.clear();
+  for (const Island::Coupling& coupling : island_.couplings) {
+    const bullet::CoupledConstraint::Row& row = coupling.constraint->row();
     CoupledRow out;
-    out.loop = true;
-    out.gear = gear_jacobians_.size();
-    FixedArray<BodyJacobian, 2>& extra_jacobians = gear_jacobians_.emplace_back();
+    out.loop = bullet::is_gear(*coupling.constraint);
+    out.coupling = extra_start_.size();
+    extra_start_.push_back(extra_jacobians_.size());
     out.target = row.velocity;
-    const IndexedSpan<const bullet::GearConstraint::BodyJacobian> bodies = gear.constraint->jacobians();
+    const IndexedSpan<const bullet::CoupledConstraint::BodyJacobian> bodies = coupling.constraint->jacobians();
     for (int i = 0; i < bodies.size(); ++i) {
-      BodyJacobian& body = i == 0 ? out.a : i == 1 ? out.b : extra_jacobians[i - 2];
-      body = {trees_.node_of(gear.bodies[i]), make_spatial(bodies[i].linear, bodies[i].angular)};
-      out.target -= dot(body.jacobian, island_.velocity(gear.bodies[i]));
+      const int index = island_.body_of(coupling, i);
+      const BodyJacobian body{trees_.node_of(index), make_spatial(bodies[i].linear, bodies[i].angular)};
+      out.target -= dot(body.jacobian, island_.velocity(index));
+      if (i == 0) {
+        out.a = body;
+      } else if (i == 1) {
+        out.b = body;
+      } else {
+        extra_jacobians_.push_back(body);
+      }
     }
     out.softness = row.softness;
     out.mobility = row.mobility;
-    out.lower = -row.bound;
-    out.upper = row.bound;
+    out.lower = row.lower;
+    out.upper = row.upper;
     rows_.push_back(out);
   }
+  extra_start_.push_back(extra_jacobians_.size());
 }
 
 void CoupledRows::collect_deferred_axes() {

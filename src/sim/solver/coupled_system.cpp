@@ -10,7 +10,8 @@ namespace {
 constexpr int kMaxRounds = 8;
 /// Largest violation of coupled rows that is accepted, m/s and rad/s.
 constexpr double kMaxViolation = 1e-2;
-/// A gear is ill-conditioned if its response is below this fraction of the response of its bodies alone.
+/// A gear or limit of a ball joint is ill-conditioned if its response is below this fraction of the response of its
+/// bodies alone.
 constexpr double kIllConditioned = 1e-6;
 /// Work budget of a step, in multiply-adds: constant, per body and per pair of contact rows. It is multiplied by
 /// kUndeferredFactor while no motor is deferred, because the accuracy of contacts is visible then. If nothing but axes
@@ -69,7 +70,7 @@ bool CoupledSystem::solve_round(double& violation, int& deferred) {
     gather_lcp_rows();
     if (!delassus.update(lcp_, lcp_rows_)) return false;
     violation = 0;
-    deferred = defer_ill_conditioned_gears();
+    deferred = defer_ill_conditioned();
     if (deferred > 0) return true;
     violation = solve_lcp(LcpSolve::full);
   } while (rows.activate_contacts() > 0);
@@ -109,30 +110,38 @@ int CoupledSystem::defer_violated() {
   return violated;
 }
 
-// Defers the axes of gears whose impulses the trees (nearly) don't respond to, because motors, limits or locks hold
-// both axes.
-int CoupledSystem::defer_ill_conditioned_gears() {
+// Defers the motors and limits of the axes of gears and ball joints whose rows' impulses the trees (nearly) don't
+// respond to, because motors, limits or locks hold these axes; where only locks do, disables the row for the step.
+int CoupledSystem::defer_ill_conditioned() {
   int deferred = 0;
   for (int i = 0; i < lcp_.size(); ++i) {
     CoupledRow& row = rows[lcp_rows_[i]];
-    const bool ill_conditioned =
-        row.gear >= 0 && !(lcp_.response(i, i) - row.softness > kIllConditioned * row.mobility);
-    if (ill_conditioned) deferred += defer_gear(row);
+    const bool gear = row.coupling >= 0 && row.loop;
+    if (!gear && row.ball < 0) continue;
+    if (lcp_.response(i, i) - row.softness > kIllConditioned * row.mobility) continue;
+    const int axes = gear ? defer_gear(row) : defer_ball(row);
+    if (axes == 0) row.lower = row.upper = 0;
+    deferred += axes;
   }
   return deferred;
 }
 
-// Defers the motors and limits of a gear's axes; where locks hold these, disables the gear for the step.
-int CoupledSystem::defer_gear(CoupledRow& row) {
+int CoupledSystem::defer_gear(const CoupledRow& row) {
   int deferred = 0;
-  const bullet::GearConstraint& gear = *island_.gears[row.gear].constraint;
+  const auto& gear = static_cast<const bullet::GearConstraint&>(*island_.couplings[row.coupling].constraint);
   for (int i = 0; i < island_.joints.size(); ++i) {
     const int node = trees_.node_of_joint(i);
     if (node < 0) continue;
     if (island_.joints[i].constraint == &gear.joint_a()) deferred += trees_.axes.defer_axis(node, gear.axis_a());
     if (island_.joints[i].constraint == &gear.joint_b()) deferred += trees_.axes.defer_axis(node, gear.axis_b());
   }
-  if (deferred == 0) row.lower = row.upper = 0;
+  return deferred;
+}
+
+int CoupledSystem::defer_ball(const CoupledRow& row) {
+  const int node = trees_.node_of_joint(row.ball);
+  int deferred = 0;
+  for (int axis = 3; node >= 0 && axis < 6; ++axis) deferred += trees_.axes.defer_axis(node, axis);
   return deferred;
 }
 

@@ -37,8 +37,9 @@ class CoupledSystem {
   void gather_lcp_rows();
   bool solve_round(double& violation, int& deferred);
   double solve_lcp(LcpSolve how);
-  int defer_ill_conditioned_gears();
-  int defer_gear(CoupledRow& row);
+  int defer_ill_conditioned();
+  int defer_gear(const CoupledRow& row);
+  int defer_ball(const CoupledRow& row);
   int defer_violated();
   int defer_touched_trees();
   bool discard_impulses();

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sim/solver/lcp/dense_kernels.h"
 
@@ -30,47 +31,54 @@ void DelassusMatrix::clear_inputs() {
   for (int i = 0; i < trees_.node_count(); ++i) trees_.axes.forest.node(i).input.fill(0);
 }
 
-// Appends the half responses of a row, for each tree that it acts on, to half_values_.
-void DelassusMatrix::add_half_response(const CoupledRow& row, HalfResponses& responses) {
-  responses.fill({});
-  FixedArray<const BodyJacobian*, 4> bodies{};
-  int count = 0;
-  rows_.for_each_jacobian(row, [&](const BodyJacobian& body) { bodies[count++] = &body; });
+// Appends the half responses of a row, for each tree that it acts on.
+void DelassusMatrix::add_half_response(const CoupledRow& row) {
+  bodies_.clear();
+  rows_.for_each_jacobian(row, [&](const BodyJacobian& body) { bodies_.push_back(&body); });
   double* unit_input = row.axis != nullptr ? &trees_.axes.forest.node(row.a.node).input[row.axis->axis] : nullptr;
   if (unit_input != nullptr) *unit_input = 1;
-  for (int i = 0, response_count = 0; i < count; ++i) {
-    if (bodies[i] == nullptr) continue;
-    // all bodies in the same tree: at most two pairs
-    const int tree = trees_.tree_of(bodies[i]->node);
-    FixedArray<TreeLoad, 4> loads;
-    int loaded = 0;
-    int axes = 0;
-    for (int k = i; k < count; ++k) {
-      const BodyJacobian* const body = bodies[k];
-      if (body == nullptr || trees_.tree_of(body->node) != tree) continue;
-      loads[loaded++] = {body->node, body->jacobian};
-      axes = std::max(axes, trees_.axes.forest.free_axis_count(body->node));
-      bodies[k] = nullptr;
-    }
-    responses[response_count++] = {tree, half_values_.size(), axes};
-    half_values_.resize(half_values_.size() + axes, 0);
-    const IndexedSpan<double> half = IndexedSpan<double>(half_values_).last(axes);
-    trees_.axes.forest.half_response(loads[0], loads[1], half);
-    if (loaded <= 2) continue;
-    half_scratch_.assign(axes, 0);
-    trees_.axes.forest.half_response(loads[2], loads[3], half_scratch_);
-    for (int k = 0; k < axes; ++k) half[k] += half_scratch_[k];
+  for (int i = 0; i < bodies_.size(); ++i) {
+    if (bodies_[i] != nullptr) add_tree_response(i);
   }
   if (unit_input != nullptr) *unit_input = 0;
 }
 
+// Appends the half response in the tree of a row's body, to the loads on all its bodies there, two at a time.
+void DelassusMatrix::add_tree_response(int first_body) {
+  const int tree = trees_.tree_of(bodies_[first_body]->node);
+  const auto in_tree = [&](const BodyJacobian* body) { return body != nullptr && trees_.tree_of(body->node) == tree; };
+  int axes = 0;
+  for (int k = first_body; k < bodies_.size(); ++k) {
+    if (in_tree(bodies_[k])) axes = std::max(axes, trees_.axes.forest.free_axis_count(bodies_[k]->node));
+  }
+  half_responses_.push_back({tree, half_values_.size(), axes});
+  half_values_.resize(half_values_.size() + axes, 0);
+  const IndexedSpan<double> half = IndexedSpan<double>(half_values_).last(axes);
+  bool first_pair = true;
+  for (int k = first_body; k < bodies_.size();) {
+    FixedArray<TreeLoad, 2> loads;
+    int loaded = 0;
+    for (; k < bodies_.size() && loaded < 2; ++k) {
+      if (!in_tree(bodies_[k])) continue;
+      loads[loaded++] = {bodies_[k]->node, bodies_[k]->jacobian};
+      bodies_[k] = nullptr;
+    }
+    if (loaded == 0) break;
+    if (std::exchange(first_pair, false)) {
+      trees_.axes.forest.half_response(loads[0], loads[1], half);
+      continue;
+    }
+    half_scratch_.assign(axes, 0);
+    trees_.axes.forest.half_response(loads[0], loads[1], half_scratch_);
+    for (int i = 0; i < axes; ++i) half[i] += half_scratch_[i];
+  }
+}
+
 // Response of one row to a unit impulse of another one.
-double DelassusMatrix::product(const HalfResponses& a, const HalfResponses& b) const {
+double DelassusMatrix::product(int a, int b) const {
   double response = 0;
-  for (const HalfResponse& first : a) {
-    if (first.tree < 0) break;
-    for (const HalfResponse& second : b) {
-      if (second.tree < 0) break;
+  for (const HalfResponse& first : responses_of(a)) {
+    for (const HalfResponse& second : responses_of(b)) {
       if (first.tree != second.tree) continue;
       response += dot_product(half_values_.data() + first.begin, half_values_.data() + second.begin,
                               std::min(first.count, second.count));
@@ -84,15 +92,18 @@ void DelassusMatrix::build(BoxedLcp& lcp, IndexedSpan<const int> rows) {
   lcp.reset(count);
   clear_inputs();
   half_values_.clear();
-  half_responses_.resize(count);
-  for (int i = 0; i < count; ++i) add_half_response(rows_[rows[i]], half_responses_[i]);
+  half_responses_.clear();
+  first_response_.clear();
+  for (int i = 0; i < count; ++i) {
+    first_response_.push_back(half_responses_.size());
+    add_half_response(rows_[rows[i]]);
+  }
+  first_response_.push_back(half_responses_.size());
   const auto elements = static_cast<double>(half_values_.size());
   budget_.charge(elements, kAxisCost);
   budget_.charge(0.5 * count * count, elements / (count + 1));
   for (int i = 0; i < count; ++i) {
-    for (int k = i; k < count; ++k) {
-      lcp.response(i, k) = lcp.response(k, i) = product(half_responses_[i], half_responses_[k]);
-    }
+    for (int k = i; k < count; ++k) lcp.response(i, k) = lcp.response(k, i) = product(i, k);
   }
 }
 
@@ -223,23 +234,22 @@ int DelassusMatrix::released_index(const CoupledRow& row) const {
 }
 
 DelassusMatrix::ImpulseSite DelassusMatrix::impulse_site(const CoupledRow& row) {
-  return {row.a, row.b, row.axis != nullptr ? static_cast<int>(row.axis->axis) : -1, row.gear};
+  return {row.a, row.b, row.axis != nullptr ? static_cast<int>(row.axis->axis) : -1, row.coupling};
 }
 
 // Column of the Delassus matrix: rates that a unit impulse gives the rows and the first released axes.
 void DelassusMatrix::compute_column(const ImpulseSite& site, IndexedSpan<const int> rows, IndexedSpan<double> rates,
                                     IndexedSpan<double> axes) {
   Forest& forest = trees_.axes.forest;
-  FixedArray<int, 4> touched{-1, -1, -1, -1};
-  const auto touches = [&](int tree) { return std::find(touched.begin(), touched.end(), tree) != touched.end(); };
-  int count = 0;
+  touched_.clear();
+  const auto touches = [&](int tree) { return std::find(touched_.begin(), touched_.end(), tree) != touched_.end(); };
   rows_.for_each_jacobian(site, [&](const BodyJacobian& body) {
     const int tree = trees_.tree_of(body.node);
-    if (!touches(tree)) touched[count++] = tree;
+    if (!touches(tree)) touched_.push_back(tree);
     if (site.axis < 0) forest.node(body.node).load += body.jacobian;
   });
   if (site.axis >= 0) forest.node(site.a.node).input[site.axis] = 1;
-  for (int i = 0; i < count; ++i) forest.respond(trees_[touched[i]].first, trees_[touched[i]].last);
+  for (const int tree : touched_) forest.respond(trees_[tree].first, trees_[tree].last);
   if (site.axis >= 0) forest.node(site.a.node).input[site.axis] = 0;
   rows_.for_each_jacobian(site, [&](const BodyJacobian& body) { forest.node(body.node).load = {}; });
   const auto rate = [&](const ImpulseSite& of) {

@@ -24,10 +24,10 @@ class DelassusMatrix {
   bool update(BoxedLcp& lcp, IndexedSpan<const int> rows);
 
  private:
-  struct ImpulseSite {  // the bodies that a unit impulse acts on (two; of a gear up to four), or an axis of the first
+  struct ImpulseSite {  // the bodies that a unit impulse acts on, or an axis of the first
     BodyJacobian a, b;
     int axis = -1;
-    int gear = -1;
+    int coupling = -1;  // gear or tendon: more bodies
   };
   struct KnownAxes {  // state of a node's axes when the matrix was built
     unsigned prescribed;
@@ -38,12 +38,15 @@ class DelassusMatrix {
     int begin = 0;  // in half_values_
     int count = 0;
   };
-  /// By tree that a row acts on; tree < 0 marks the end.
-  using HalfResponses = FixedArray<HalfResponse, 4>;
 
   void clear_inputs();
-  void add_half_response(const CoupledRow& row, HalfResponses& responses);
-  double product(const HalfResponses& a, const HalfResponses& b) const;
+  void add_half_response(const CoupledRow& row);
+  void add_tree_response(int first_body);
+  IndexedSpan<const HalfResponse> responses_of(int row) const {
+    const int first = first_response_[row];
+    return IndexedSpan<const HalfResponse>(half_responses_).subspan(first, first_response_[row + 1] - first);
+  }
+  double product(int a, int b) const;
   void add_softness(BoxedLcp& lcp, int i, CoupledRow& row);
   int row_id(int coupled_row) const;
   bool extend(BoxedLcp& lcp, IndexedSpan<const int> rows);
@@ -62,9 +65,11 @@ class DelassusMatrix {
   CoupledRows& rows_;
   WorkBudget& budget_;
   // of build()
-  IndexedArray<double> half_values_;            // half responses of the rows
-  IndexedArray<double> half_scratch_;           // of a third and fourth body in one tree
-  IndexedArray<HalfResponses> half_responses_;  // by row
+  IndexedArray<double> half_values_;           // half responses of the rows
+  IndexedArray<double> half_scratch_;          // of a third and further bodies in one tree
+  IndexedArray<HalfResponse> half_responses_;  // of the rows, by tree that a row acts on
+  IndexedArray<int> first_response_;           // by row: its first one in half_responses_; one more at the end
+  IndexedArray<const BodyJacobian*> bodies_;   // of a row; null: done
   // of update()
   std::uint64_t factor_version_ = 0;  // the matrix was built with; 0: none
   IndexedArray<int> row_ids_;
@@ -74,6 +79,7 @@ class DelassusMatrix {
   IndexedArray<int> previous_index_;    // by row: its index before
   IndexedArray<double> updates_;        // vectors whose outer products are added
   IndexedArray<double> columns_;        // of the released axes, and of one new row
+  IndexedArray<int> touched_;           // trees that an impulse acts on
 };
 
 }  // namespace limber::sim::solver

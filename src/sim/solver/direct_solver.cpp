@@ -160,7 +160,7 @@ bool DirectSolver::Step::iterate_corrections() {
   return solved;
 }
 
-// Writes the velocities to Bullet's solver bodies, and the impulses to contacts, joints and gears.
+// Writes the velocities to Bullet's solver bodies, and the impulses to contacts, joints, gears and tendons.
 void DirectSolver::Step::write() {
   for (int i = 0; i < trees_.node_count(); ++i) {
     const Spatial& change = trees_.axes.change(i);
@@ -174,6 +174,8 @@ void DirectSolver::Step::write() {
   for (int i = 0; i < island.joints.size(); ++i) {
     bullet::JointConstraint& joint = *island.joints[i].constraint;
     const int node = trees_.node_of_joint(i);
+    for (int r = 0; r < joint.ball_limits().count(); ++r)
+      joint.set_ball_impulse(r, bullet::to_scalar(rows[rows.first_ball_row(i) + r].impulse));
     impulses_.clear();
     if (node >= 0) {
       for (const AxisRow& row : trees_.axes.rows(node)) impulses_.push_back(row.impulse);
@@ -183,8 +185,8 @@ void DirectSolver::Step::write() {
     }
     joint.set_impulses(impulses_);
   }
-  for (int i = 0; i < island.gears.size(); ++i)
-    island.gears[i].constraint->set_impulse(rows[rows.row_of_gear(i)].impulse);
+  for (int i = 0; i < island.couplings.size(); ++i)
+    island.couplings[i].constraint->set_impulse(rows[rows.row_of_coupling(i)].impulse);
 }
 
 // Corrects penetration, and the position errors of joints that the drift correction leaves. Call after write().
@@ -214,7 +216,7 @@ void DirectSolver::Step::fall_back() {
     joint.constraint->warm_start().clear_block_impulses();
     joint.constraint->warm_start().active_set().fill(0);
   }
-  for (const Island::Gear& gear : island.gears) gear.constraint->forget_impulses();
+  for (const Island::Coupling& coupling : island.couplings) coupling.constraint->forget_impulses();
 }
 
 // Residual of a row of a joint, calculated from the bodies' velocities, independently of the solver's rates.
@@ -256,21 +258,25 @@ DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::begin() {
   step_->island.joints.clear();
-  step_->island.gears.clear();
+  step_->island.couplings.clear();
+  step_->island.coupled_bodies.clear();
 }
 
 void DirectSolver::add_joint(bullet::JointConstraint& joint, int body_a, int body_b) {
   step_->island.joints.push_back({&joint, body_a, body_b});
 }
 
-void DirectSolver::add_gear(bullet::GearConstraint& gear, const std::array<int, 4>& bodies) {
-  step_->island.gears.push_back({&gear, {bodies}});
+void DirectSolver::add_coupling(bullet::CoupledConstraint& coupling) {
+  step_->island.couplings.push_back({&coupling, step_->island.coupled_bodies.size()});
 }
+
+void DirectSolver::add_coupled_body(int body) { step_->island.coupled_bodies.push_back(body); }
 
 int DirectSolver::joint_count() const { return step_->island.joints.size(); }
 
 bool DirectSolver::solve(const IslandPools& pools, const btContactSolverInfo& info) {
-  const int max_rows = joint_count() == 0 ? kMaxRowsWithoutJoints : kMaxContactRows;
+  const bool only_contacts = joint_count() == 0 && step_->island.couplings.empty();
+  const int max_rows = only_contacts ? kMaxRowsWithoutJoints : kMaxContactRows;
   if (pools.contacts.size() + pools.frictions.size() + pools.rollings.size() > max_rows) {
     counts_.too_large++;
     return false;

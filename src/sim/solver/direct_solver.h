@@ -1,10 +1,9 @@
-// DirectSolver: solves one island exactly. Its joints form trees (articulated bodies); contacts, gears and joints that
-// close loops are coupled rows, solved as an LCP with the trees' response (docs/understand/solver.md). The stages of a
-// substep are in direct_solver.cpp; other code needs only this header and, of the parts that `bullet` shares,
-// axis_active_set.h, gyroscope.h and indexed_array.h.
+// DirectSolver: solves one island exactly. Its joints form trees (articulated bodies); contacts, gears, tendons and
+// joints that close loops are coupled rows, solved as an LCP with the trees' response (docs/understand/solver.md). The
+// stages of a substep are in direct_solver.cpp; other code needs only this header and, of the parts that `bullet`
+// shares, axis_active_set.h, gyroscope.h and indexed_array.h.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -15,7 +14,7 @@ template <typename T>
 class btAlignedObjectArray;
 
 namespace limber::sim::bullet {
-class GearConstraint;
+class CoupledConstraint;
 class JointConstraint;
 }  // namespace limber::sim::bullet
 
@@ -42,24 +41,26 @@ struct DirectCounts {
 struct DirectResiduals {
   double unbounded = 0;  ///< Of rows of tree joints without bounds on the impulse: locks, springs.
   double bounded = 0;    ///< Of the other rows of tree joints: motors, limits, friction.
-  double coupled = 0;    ///< Of contacts, gears and joints that close loops.
+  double coupled = 0;    ///< Of contacts, gears, tendons and joints that close loops.
 };
 
-/// Per island: begin(), add_joint() and add_gear(), then solve(). [sim]
+/// Per island: begin(), add_joint() and add_coupling(), then solve(). [sim]
 class DirectSolver {
  public:
   DirectSolver();
   ~DirectSolver();
 
-  /// Removes all joints and gears; call before adding those of an island.
+  /// Removes all joints, gears and tendons; call before adding those of an island.
   void begin();
   /// Adds a joint whose rows are planned, with its two solver bodies.
   void add_joint(bullet::JointConstraint& joint, int body_a, int body_b);
-  /// Adds a gear whose row is planned, with the solver body of each of its sides.
-  void add_gear(bullet::GearConstraint& gear, const std::array<int, 4>& bodies);
+  /// Adds a gear or tendon whose row is planned; add_coupled_body() follows for each of its Jacobians.
+  void add_coupling(bullet::CoupledConstraint& coupling);
+  void add_coupled_body(int body);
   int joint_count() const;
   /// Solves the island. Returns false if the iterative solver must do it; no result is written then, but after a failed
-  /// attempt the warm-start impulses of the previous step are removed from `pools`, joints and gears.
+  /// attempt the warm-start impulses of the previous step are removed from `pools`, joints, gears and
+  /// tendons.
   bool solve(const IslandPools& pools, const btContactSolverInfo& info);
 
   /// Counts since construction.

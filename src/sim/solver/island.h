@@ -24,18 +24,20 @@ struct Island {
     int body_a;
     int body_b;
   };
-  struct Gear {
-    bullet::GearConstraint* constraint;
-    FixedArray<int, 4> bodies;
+  struct Coupling {  ///< A gear or tendon.
+    bullet::CoupledConstraint* constraint;
+    int first;  ///< Index of its first body in coupled_bodies; the others follow.
   };
 
   IndexedArray<Joint> joints;
-  IndexedArray<Gear> gears;
+  IndexedArray<Coupling> couplings;
+  IndexedArray<int> coupled_bodies;  ///< Solver bodies, in the order of CoupledConstraint::jacobians().
   // set by DirectSolver::solve()
   const IslandPools* pools = nullptr;
   const btContactSolverInfo* info = nullptr;
   double h = 0;  ///< Length of the step, s.
 
+  int body_of(const Coupling& coupling, int jacobian) const { return coupled_bodies[coupling.first + jacobian]; }
   btSolverBody& body(int i) const { return pools->bodies[i]; }
   btRigidBody& rigid(int i) const { return *body(i).m_originalBody; }
   bool is_dynamic(int i) const { return body(i).m_invMass.x() > 0; }

@@ -1,4 +1,4 @@
-// Rebuild: replaces a body, with its state and gears.
+// Rebuild: replaces a body, with its state, gears and tendons.
 #include "sim/state/rebuild.h"
 
 #include <utility>
@@ -6,6 +6,7 @@
 #include "base/check.h"
 #include "sim/gears/gear_list.h"
 #include "sim/state/body_state.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
@@ -14,6 +15,7 @@ namespace limber::sim {
 Body& rebuild_body(World& world, Body& body, const Body& blueprint, const std::vector<bool>& joints_to_reset) {
   const BodyState state(body);
   std::vector<GearList::Detached> gears = world.gears().detach(body);
+  std::vector<TendonList::Detached> tendons = world.tendons().detach(body);
   world.remove_body(body);
   const Result<Body*> copied = world.copy_body(blueprint, blueprint.name());
   LIMBER_CHECK(copied.ok());
@@ -24,6 +26,7 @@ Body& rebuild_body(World& world, Body& body, const Body& blueprint, const std::v
   replacement.recovery().save_start_pose(blueprint);
   state.apply_to(replacement, joints_to_reset);
   world.gears().attach(std::move(gears), replacement);
+  world.tendons().attach(std::move(tendons), replacement);
   return replacement;
 }
 

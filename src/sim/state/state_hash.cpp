@@ -10,6 +10,7 @@
 #include "sim/gears/gear_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -60,6 +61,7 @@ std::uint64_t body_hash(const Body& body, std::uint64_t start) {
   for (const auto& joint : body.joints()) add_node(joint->id());
   for (const auto& motor : body.motors()) add_node(motor->id());
   for (const auto& sensor : body.sensors().list()) add_node(sensor->id());
+  for (const Tendon* tendon : body.world().tendons().of(body)) add_node(tendon->id());
   for (const PartPair& pair : body.pairs().list()) {
     numbers.add(static_cast<double>(pair.a), static_cast<double>(pair.b), pair.excluded() ? 1 : 0);
   }
@@ -73,7 +75,7 @@ std::uint64_t World::state_hash() const {
   for (const NodeId id : {id_, visuals_->id(), visuals_->appearance().id()}) fixed += fixed_node_hash(store_, id);
   NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
   for (const auto& shape : shapes_->list()) numbers.add_word(persistent_hash(store_, shape->id()));
-  for (const auto& gear : gears_->list()) numbers.add_word(persistent_hash(store_, gear->id()));
+  for (const auto& gear : gears().list()) numbers.add_word(persistent_hash(store_, gear->id()));
   numbers.add(time(), static_cast<double>(state_.tick), static_cast<double>(seed()));
   std::uint64_t hash = numbers.value();
   for (const auto& body : bodies()) hash = body_hash(*body, hash);

@@ -9,6 +9,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/gears/gear.h"
 #include "sim/shapes/shape.h"
+#include "sim/tendons/tendon.h"
 #include "sim/world/body.h"
 #include "sim/world/part.h"
 #include "sim/world/world.h"
@@ -59,6 +60,7 @@ void WorldTransaction::commit() {
   world_.store().commit_transaction();
   world_.behaviors().transaction().commit();
   destroy(hidden_gears_);
+  destroy(hidden_tendons_);
   destroy(hidden_bodies_);
 }
 
@@ -164,6 +166,10 @@ void WorldTransaction::hide(std::vector<std::unique_ptr<Body>>& list, std::size_
 
 void WorldTransaction::hide(std::vector<std::unique_ptr<Gear>>& list, std::size_t index) {
   hide_in<&WorldTransaction::hidden_gears_>(list, index);
+}
+
+void WorldTransaction::hide(std::vector<std::unique_ptr<Tendon>>& list, std::size_t index) {
+  hide_in<&WorldTransaction::hidden_tendons_>(list, index);
 }
 
 }  // namespace limber::sim

@@ -17,6 +17,7 @@ class Body;
 class Gear;
 class Part;
 class Shape;
+class Tendon;
 class World;
 
 /// Requests to the owner of a scene, which fulfills them between two ticks.
@@ -69,6 +70,7 @@ class WorldTransaction {
   /// Removes the object at `index` of its list, and hides it until the call ends.
   void hide(std::vector<std::unique_ptr<Body>>& list, std::size_t index);
   void hide(std::vector<std::unique_ptr<Gear>>& list, std::size_t index);
+  void hide(std::vector<std::unique_ptr<Tendon>>& list, std::size_t index);
 
   /// Logs that an object was added to the end of its list.
   template <class T>
@@ -105,7 +107,8 @@ class WorldTransaction {
   std::vector<SavedForces> forces_;
   std::vector<SavedMotion> motions_;
   std::vector<Hidden<Body>> hidden_bodies_;
-  std::vector<Hidden<Gear>> hidden_gears_;  // destroyed before the bodies
+  std::vector<Hidden<Gear>> hidden_gears_;  // destroyed before the bodies, like the tendons
+  std::vector<Hidden<Tendon>> hidden_tendons_;
 };
 
 }  // namespace limber::sim

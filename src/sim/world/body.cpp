@@ -214,8 +214,9 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
     return Error{fmt::format("part '{}/{}' needs a mass of {} .. {} kg, or 0 for a static part, not {}", this->name(),
                              name, mass_property.min, mass_property.max, mass)};
   }
-  if (shape.model().kind == model::ShapeKind::plane && mass > 0) {
-    return Error{fmt::format("part '{}/{}' is a plane: its mass must be 0, not {} kg", this->name(), name, mass)};
+  if (model::is_ground(shape.model()) && mass > 0) {
+    return Error{fmt::format("part '{}/{}' is a {}: its mass must be 0, not {} kg", this->name(), name,
+                             shape.model().surface != nullptr ? "surface" : "plane", mass)};
   }
   if (shape.placed().empty()) {
     return Error{fmt::format("compound '{}' is empty; add its children before a part is made of it", shape.name())};
@@ -223,8 +224,8 @@ Result<Part*> Body::add_part(std::string name, Shape& shape, double mass, const 
   auto part = std::make_unique<Part>(*this, parts_.group(), std::move(name), shape.geometry(), mass,
                                      Pose{pose.position, glm::normalize(pose.rotation)});
   part->set_shape(shape.id());
-  if (shape.model().kind == model::ShapeKind::plane) {
-    // friction and restitution of two parts multiply: a plane with 1 leaves the other part's values unchanged
+  if (model::is_ground(shape.model())) {
+    // friction and restitution of two parts multiply: ground with 1 leaves the other part's values unchanged
     store().mutable_values(part->id(), Part::table().at("friction"))[0] = 1;
     store().mutable_values(part->id(), Part::table().at("restitution"))[0] = 1;
   }

@@ -3,12 +3,16 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/check.h"
+#include "base/log/log.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/joints/joint_constraint.h"
 #include "sim/gears/gear.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -39,6 +43,66 @@ void set_up_motor(Motor& motor, const model::JointModel& m, std::optional<bool> 
   }
 }
 
+void add_tendon(Body& body, const model::TendonModel& from) {
+  std::vector<Tendon::Point> points;
+  for (const model::TendonModel::Point& point : from.points)
+    points.push_back({body.parts()[static_cast<std::size_t>(point.link)].get(), point.position});
+  const Result<Tendon*> added = body.world().tendons().add(body, from.name, std::move(points));
+  if (!added) return log_warning("{}", added.error());
+  const auto set = [&](const char* property, double value) {
+    const Property& p = Tendon::table().at(property);
+    body.store().mutable_values((*added)->id(), p)[0] = std::clamp(value, p.min, p.max);
+  };
+  set("stiffness", from.stiffness);
+  set("damping", from.damping);
+  if (from.rest) set("rest_length", *from.rest);
+  set("pushes", from.pushes ? 1 : 0);
+  if (from.radius) set("radius", *from.radius);
+  (*added)->apply_settings();
+}
+
+// Sets the limits of a model's ball joint; apply_limits() applies them.
+void set_ball_limits(const Joint& joint, const model::BallLimitsModel& limits) {
+  Store& store = joint.body().store();
+  const auto set = [&](const char* property, double value) {
+    store.mutable_values(joint.id(), Joint::table().at(property))[0] = value;
+  };
+  set("cone_limit", limits.cone);
+  set("twist_lower", limits.twist_lower);
+  set("twist_upper", limits.twist_upper);
+  set("rotation_limit", limits.angle);
+}
+
+SensorKind sensor_kind(model::SensorModel::Kind kind) {
+  switch (kind) {
+    case model::SensorModel::Kind::imu:
+      return SensorKind::imu;
+    case model::SensorModel::Kind::range_finder:
+      return SensorKind::range_finder;
+    case model::SensorModel::Kind::touch:
+      break;
+  }
+  return SensorKind::touch;
+}
+
+// Adds a model's sensor to its part.
+void add_sensor(SensorList& sensors, Part& part, const model::SensorModel& m) {
+  const SensorKind kind = sensor_kind(m.kind);
+  const Result<Sensor*> sensor = sensors.add(m.name, kind, part);
+  LIMBER_CHECK(sensor.ok());
+  if (!sensor) return;
+  Store& store = part.body().store();
+  const auto values = [&](const char* property) {
+    return store.mutable_values((*sensor)->id(), Sensor::table(kind).at(property));
+  };
+  put(values("position"), m.pose.position);
+  if (kind == SensorKind::imu) put(values("rotation"), m.pose.rotation);
+  if (kind == SensorKind::touch) values("radius")[0] = m.radius;
+  if (kind != SensorKind::range_finder) return;
+  put(values("direction"), m.pose.rotation * Vec3(0, 0, 1));
+  if (m.range > 0) values("range")[0] = m.range;
+}
+
 }  // namespace
 
 void Body::build(const std::shared_ptr<const model::BodyModel>& model, const BuildOptions& options) {
@@ -64,6 +128,7 @@ void Body::build(const std::shared_ptr<const model::BodyModel>& model, const Bui
     Part& child = *parts()[static_cast<std::size_t>(m.child)];
     Joint& joint = joints_.add(std::make_unique<Joint>(*this, joints_.group(), m.name, parent, child, spec));
     store().mutable_values(joint.id(), Joint::table().at("armature"))[0] = m.armature;
+    set_ball_limits(joint, m.ball);
     joint.apply_limits();
     joint.constraint().reset(joint.own_axis() == 5 ? Vec3(0, 0, m.start) : Vec3(0));
     joint.publish();
@@ -78,7 +143,10 @@ void Body::build(const std::shared_ptr<const model::BodyModel>& model, const Bui
     joint.apply_limits();
     joint.update_from_parts();
   }
+  for (const model::SensorModel& m : model->sensors)
+    add_sensor(*sensors_, *parts()[static_cast<std::size_t>(m.link)], m);
   followers_ = couple_mimic_joints(*this);
+  for (const model::TendonModel& tendon : model->tendons) add_tendon(*this, tendon);
 }
 
 void Body::build_copy(const Body& source) {
@@ -124,6 +192,7 @@ void Body::build_copy(const Body& source) {
     copy_values(from->id(), sensor.id(), Sensor::table(from->kind()));
   }
   followers_ = couple_mimic_joints(*this);
+  world_.tendons().copy(source, *this);
   world_.behaviors().copy(source, *this);
 }
 

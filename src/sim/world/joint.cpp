@@ -39,7 +39,7 @@ const JointReadouts& joint_readouts() {
 
 struct LimitProperties {
   std::array<const Property*, 2> lower, upper, stop_erp, stop_cfm;  // linear, angular
-  const Property* armature;
+  const Property *armature, *cone, *twist_lower, *twist_upper, *rotation;
 };
 
 const LimitProperties& limit_properties() {
@@ -48,7 +48,11 @@ const LimitProperties& limit_properties() {
                                      {at("linear_upper_limit"), at("angular_upper_limit")},
                                      {at("linear_stop_erp"), at("angular_stop_erp")},
                                      {at("linear_stop_cfm"), at("angular_stop_cfm")},
-                                     at("armature")};
+                                     at("armature"),
+                                     at("cone_limit"),
+                                     at("twist_lower"),
+                                     at("twist_upper"),
+                                     at("rotation_limit")};
   return found;
 }
 
@@ -90,6 +94,13 @@ Property stop_property(std::string name, const char* unit, double initial, std::
       on_change<&Joint::apply_limits>(vec3(std::move(name), unit, {initial, initial, initial}, 0, 1, std::move(doc))));
 }
 
+/// Smallest cone, rad, since a swing of 0 has no direction.
+constexpr double kMinCone = 0.01;
+
+Property ball_limit(std::string name, double initial, double min, double max, std::string doc) {
+  return on_change<&Joint::apply_limits>(number(std::move(name), "rad", initial, min, max, std::move(doc)));
+}
+
 }  // namespace
 
 const PropertyTable& Joint::table() {
@@ -112,6 +123,13 @@ const PropertyTable& Joint::table() {
               number("armature", "kg | kg·m²", 0, 0, 1e6,
                      "Inertia of the motor's rotor along or about the own axis, as it acts on the joint (with a gear, "
                      "times the square of its ratio); it adds to that of the parts.")),
+          ball_limit("cone_limit", kPi, kMinCone, kPi,
+                     "Largest swing: the angle between the joint's z axes on both parts, for ball joints; π: free."),
+          ball_limit("twist_lower", kPi, -kPi, kPi,
+                     "Lower limit of the twist of a ball joint; equal to the upper: locked; above it: free."),
+          ball_limit("twist_upper", -kPi, -kPi, kPi, "Upper limit of the twist of a ball joint."),
+          ball_limit("rotation_limit", kPi, kMinCone, kPi,
+                     "Largest angle of the whole rotation of a ball joint, about any axis; π: free."),
           transient(
               hashed(readout(number("value", "m | rad", 0, -kUnbounded, kUnbounded, "Position of the own axis.")))),
           transient(
@@ -134,6 +152,11 @@ const PropertyTable& Joint::table() {
               vec3("reaction_torque", "N·m", {0, 0, 0}, -kUnbounded, kUnbounded,
                    "Torque of the parent on the child about the joint, joint's frame on the parent, mean of the last "
                    "tick."))),
+          computed<&Joint::read_swing>(readout(
+              number("swing", "rad", 0, 0, kPi, "Angle between the joint's z axes on both parts, as cone_limit."))),
+          computed<&Joint::read_twist>(readout(number(
+              "twist", "rad", 0, -2 * kPi, 2 * kPi,
+              "Rotation about the z axis that precedes the swing; within ±π, or nearest to the twist's limits."))),
           computed<&Joint::read_axis>(readout(vec3("axis", "", {0, 0, 1}, -1, 1, "Direction of the own axis, world."))),
       });
   return table;
@@ -228,7 +251,20 @@ void Joint::apply_limits() {
     if (!settings.locked()) open |= 1u << axis;
   }
   state_.open_axes = static_cast<std::uint8_t>(open);
+  apply_ball_limits();
   if ((open & ~before) != 0 && motor_ != nullptr) motor_->apply_axes();
+}
+
+void Joint::apply_ball_limits() {
+  const auto value_of = [this](const Property* property) {
+    return static_cast<float>(body_.store().values(id_, *property)[0]);
+  };
+  const LimitProperties& properties = limit_properties();
+  const bullet::BallLimitSettings settings{value_of(properties.cone), value_of(properties.twist_lower),
+                                           value_of(properties.twist_upper), value_of(properties.rotation)};
+  if (settings == constraint_->ball_limits().settings()) return;
+  constraint_->set_ball_limits(settings);
+  wake();
 }
 
 void Joint::update_from_parts() {
@@ -296,6 +332,17 @@ bool Joint::check_separation() {
   }
   state_.separated_ticks = distance > size ? state_.separated_ticks + 1 : 0;
   return state_.separated_ticks >= kSeparatedTicks;
+}
+
+void Joint::read_swing(double* out) const { out[0] = bullet::swing_twist(constraint_->pose().rotation()).swing; }
+
+void Joint::read_twist(double* out) const {
+  const bullet::BallLimitSettings& limits = constraint_->ball_limits().settings();
+  const double twist = bullet::swing_twist(constraint_->pose().rotation()).twist;
+  const bool limited = limits.twist_lower <= limits.twist_upper;
+  out[0] = limited ? bullet::turned_into(twist, static_cast<double>(limits.twist_lower),
+                                         static_cast<double>(limits.twist_upper))
+                   : twist;
 }
 
 void Joint::read_axis(double* out) const {

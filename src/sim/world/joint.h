@@ -102,8 +102,12 @@ class Joint {
   void serialize(Archive& archive) { archive.serialize(state_); }
   /// Getter of the property `axis`: direction of the own axis, world.
   void read_axis(double* out) const;
+  /// Getters of the properties `swing` and `twist`.
+  void read_swing(double* out) const;
+  void read_twist(double* out) const;
 
  private:
+  void apply_ball_limits();
   static std::unique_ptr<bullet::JointConstraint> make_constraint(Part& parent, Part& child, const JointSpec& spec);
 
   // fields that every tick reads come first

@@ -10,6 +10,7 @@
 #include "sim/gears/gear_list.h"
 #include "sim/sensors/readouts.h"
 #include "sim/shapes/shape_list.h"
+#include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 
@@ -64,6 +65,7 @@ void update_moved_joints(World& world) {
     if (body->update_moved_joints()) world.gears().reset_constraints(*body);
   }
   world.gears().update();
+  world.tendons().update();
 }
 
 // Callbacks of the properties.
@@ -155,7 +157,7 @@ World::World(Store& store, const WorldSetup& setup)
     bullet_ = std::make_unique<bullet::IslandWorld>(setup);
   }
   const NodeId physics = store_.parent(id_);
-  gears_ = std::make_unique<GearList>(*this, physics);
+  couplings_ = {std::make_unique<GearList>(*this, physics), std::make_unique<TendonList>(*this)};
   behaviors_ = std::make_unique<BehaviorList>(*this, physics);
   visuals_ = std::make_unique<Visuals>(*this);
   shapes_ = std::make_unique<ShapeList>(store_, visuals_->id(), transaction_);
@@ -167,7 +169,8 @@ World::~World() { clear(); }
 void World::clear() {
   panic_.end();
   behaviors_->clear();
-  gears_->clear();
+  gears().clear();
+  tendons().clear();
   bodies_.objects().clear();
   shapes_->clear();
   for (const Property& property : table().properties()) {
@@ -215,7 +218,8 @@ Result<Body*> World::copy_body(const Body& source, std::string name) {
 void World::remove_body(Body& body) {
   const std::size_t index = bodies_.index_of(body);
   if (index == bodies_.list().size()) return;
-  gears_->remove_from(body);
+  gears().remove_from(body);
+  tendons().remove_from(body);
   if (transaction_.active()) return transaction_.hide(bodies_.objects(), index);
   bodies_.objects().erase(bodies_.objects().begin() + static_cast<std::ptrdiff_t>(index));
 }
@@ -264,22 +268,7 @@ TickTimes World::step() {
   const double readout_time = system::clock_seconds();
   sensing_.end_contacts();
   state_.tick++;
-  publish_time();
-  store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
-  publish_solver_counts(*this, previous_counts);
-  store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
-  awake_bodies_.publish();
-  part_inputs_.kinematics.end_tick();
-  sensing_.end_tick();
-  gears_->warn_slipping();
-  stability_.end_tick();
-  visuals_->camera_moves().step();
-  return {flush_time - start_time, physics_time - flush_time, readout_time - physics_time,
-          system::clock_seconds() - readout_time};
-}
-
-// Computes the time as a product, since a sum of timesteps would drift from it.
-void World::publish_time() {
+  // computed as a product, since a sum of timesteps would drift from it
   if (timestep() != state_.last_timestep) {
     state_.last_timestep = timestep();
     state_.time_at_timestep_change = time();
@@ -288,6 +277,18 @@ void World::publish_time() {
   store_.mutable_values(id_, *world_properties().time)[0] =
       state_.time_at_timestep_change +
       static_cast<double>(state_.tick - state_.tick_at_timestep_change) * state_.last_timestep;
+  store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
+  publish_solver_counts(*this, previous_counts);
+  store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
+  awake_bodies_.publish();
+  tendons().publish();
+  part_inputs_.kinematics.end_tick();
+  sensing_.end_tick();
+  gears().warn_slipping();
+  stability_.end_tick();
+  visuals_->camera_moves().step();
+  return {flush_time - start_time, physics_time - flush_time, readout_time - physics_time,
+          system::clock_seconds() - readout_time};
 }
 
 void World::after_substep(btDynamicsWorld* bullet, btScalar h) {
@@ -303,7 +304,7 @@ void World::after_substep(btDynamicsWorld* bullet, btScalar h) {
 void World::serialize(Archive& archive) {
   archive.serialize_all(state_, stability_, panic_, store_, sensing_, visuals_->camera_moves(), part_inputs_.forces);
   for (const auto& body : bodies()) body->serialize(archive);
-  archive.serialize_all(*gears_, *behaviors_);
+  archive.serialize_all(gears(), tendons(), *behaviors_);
   if (!archive.loading()) return;
   awake_bodies_.invalidate();
   part_inputs_.kinematics.restore();

@@ -1,5 +1,5 @@
-// World: owns the bodies, gears, shapes and behaviors of a scene and runs the physical part of a tick: behaviors,
-// property changes, Bullet, readouts, contacts, stability check. [sim]
+// World: owns the bodies, gears, tendons, shapes and behaviors of a scene and runs the physical part of a tick:
+// behaviors, property changes, Bullet, readouts, contacts, stability check. [sim]
 #pragma once
 
 #include <cstdint>
@@ -40,6 +40,7 @@ class BehaviorList;
 class Body;
 class GearList;
 class ShapeList;
+class TendonList;
 class Visuals;
 struct BuildOptions;
 
@@ -70,8 +71,8 @@ class World {
   /// Copies a body of this or another world with all its values, to the same place, so that both overlap. Contacts are
   /// found in the next step: moving the copy (set_pose) before it avoids a collision of the two.
   Result<Body*> copy_body(const Body& source, std::string name);
-  /// Removes a body and the gears of its joints. In a guarded call the body is hidden at once and destroyed when the
-  /// call succeeds.
+  /// Removes a body, the gears of its joints, and the tendons that use it. In a guarded call the body is hidden at once
+  /// and destroyed when the call succeeds.
   void remove_body(Body& body);
   Body* find_body(std::string_view name) const { return bodies_.find(name); }
   std::span<const std::unique_ptr<Body>> bodies() const { return bodies_.list(); }
@@ -79,7 +80,8 @@ class World {
   /// Moves the bodies of `first` to the front of the list, in this order; the others follow in their previous order.
   void move_bodies_to_front(const std::vector<Body*>& first);
 
-  GearList& gears() const { return *gears_; }
+  GearList& gears() const { return *couplings_.gears; }
+  TendonList& tendons() const { return *couplings_.tendons; }
   ShapeList& shapes() const { return *shapes_; }
   Visuals& visuals() const { return *visuals_; }
   BehaviorList& behaviors() const { return *behaviors_; }
@@ -127,7 +129,6 @@ class World {
   WorldTransaction& transaction() { return transaction_; }
 
  private:
-  void publish_time();
   static void after_substep(btDynamicsWorld* bullet, float h);
 
   Store& store_;
@@ -142,7 +143,10 @@ class World {
   MassTable mass_table_;
   std::unique_ptr<ShapeList> shapes_;
   ObjectList<Body> bodies_;
-  std::unique_ptr<GearList> gears_;  // destroyed before the bodies
+  struct Couplings {  // destroyed before the bodies
+    std::unique_ptr<GearList> gears;
+    std::unique_ptr<TendonList> tendons;
+  } couplings_;
   std::unique_ptr<BehaviorList> behaviors_;
   std::unique_ptr<Visuals> visuals_;
   WorldTransaction transaction_{*this};

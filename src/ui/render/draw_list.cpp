@@ -44,6 +44,21 @@ Pose interpolate(const Pose& from, const Pose& to, double mix) {
   return {glm::mix(from.position, to.position, mix), glm::normalize(from.rotation * (1 - mix) + rotation * mix)};
 }
 
+// Rotation that turns z to a unit vector.
+Quat rotation_to(const Vec3& direction) {
+  if (direction.z < -1 + 1e-9) return {0, 1, 0, 0};
+  const Vec3 axis = glm::cross(Vec3(0, 0, 1), direction);
+  return glm::normalize(Quat(1 + direction.z, axis.x, axis.y, axis.z));
+}
+
+// Red, green and blue of a tension: pale while slack, yellow at 10 N, orange at 100 N, red from 1 kN on.
+Vec3 tension_color(double force) {
+  constexpr Vec3 kColors[] = {{0.93, 0.93, 0.90}, {1.0, 0.85, 0.35}, {1.0, 0.5, 0.12}, {0.85, 0.1, 0.1}};
+  const double place = std::clamp(std::log10(1 + std::abs(force)), 0.0, 3.0);
+  const auto index = std::min<std::size_t>(2, static_cast<std::size_t>(place));
+  return glm::mix(kColors[index], kColors[index + 1], place - static_cast<double>(index));
+}
+
 }  // namespace
 
 // ofxDabPhysics's scales of diffuse and ambient light are 0.5 for full reflection, hence the factor 2; its exponents
@@ -101,6 +116,12 @@ void DrawList::rebuild_shapes(const engine::Snapshot& current) {
     }
   }
   first_part_.push_back(static_cast<std::uint32_t>(shapes_.size()));
+  if (scene_->tendons.empty()) return;
+  tendon_shape_.mesh = {model::ShapeKind::cylinder, nullptr};
+  const auto [number, fresh] = numbers.try_emplace(tendon_shape_.mesh, static_cast<std::uint32_t>(meshes_.size()));
+  if (fresh) meshes_.push_back(tendon_shape_.mesh);
+  tendon_shape_.mesh_index = number->second;
+  tendon_shape_.first_part = false;  // it doesn't extend the bounds of the scene
 }
 
 void DrawList::update_materials(const engine::Snapshot& current) {
@@ -168,6 +189,31 @@ void DrawList::add_instance(const ShapeDraw& shape, const Pose& pose, const floa
   radii_.push_back(to_float(shape.bounding_radius));
 }
 
+// A cylinder for each segment of the line through tendon_points_.
+void DrawList::add_tendon(const engine::RenderTendon& tendon, const engine::Snapshot& current,
+                          const DrawCamera& camera) {
+  const double radius = engine::radius_of(current, tendon);
+  if (radius <= 0) return;
+  const Vec3 color = tension_color(current.transient[tendon.force_offset]);
+  const float tint[4] = {to_float(linear_light_of(color.x)), to_float(linear_light_of(color.y)),
+                         to_float(linear_light_of(color.z)), 1};
+  for (std::size_t i = 1; i < tendon_points_.size(); i++) {
+    const Vec3 from = tendon_points_[i - 1];
+    const Vec3 along = tendon_points_[i] - from;
+    const double length = glm::length(along);
+    if (!(length > 1e-9)) continue;
+    model::ShapeModel shape;
+    shape.kind = model::ShapeKind::cylinder;
+    shape.radius = radius;
+    shape.height = length;
+    const MeshSize size = mesh_size(shape);
+    for (int axis = 0; axis < 3; axis++) tendon_shape_.size.extent[axis] = to_float(size.extent[axis]);
+    tendon_shape_.size.rounding_radius = to_float(size.rounding_radius);
+    tendon_shape_.bounding_radius = bounding_radius(shape);
+    add_instance(tendon_shape_, {from + along / 2.0, rotation_to(along / length)}, tint, camera);
+  }
+}
+
 void DrawList::update(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
                       const DrawCamera& camera) {
   if (scene_ != current.render_scene) {
@@ -190,6 +236,16 @@ void DrawList::update(const engine::Snapshot& previous, const engine::Snapshot& 
     if (interpolates) part = interpolate(engine::part_pose(previous, instance.part_offset), part, mix);
     for (std::uint32_t k = first_part_[instance.shape]; k < first_part_[instance.shape + 1]; k++)
       add_instance(shapes_[k], part * instance.origin, tints_.data() + 4 * i, camera);
+  }
+  for (const engine::RenderTendon& tendon : scene_->tendons) {
+    if (current.transient[tendon.enabled_offset] == 0) continue;
+    tendon_points_.clear();
+    for (const engine::RenderTendon::Point& point : tendon.points) {
+      Pose part = engine::part_pose(current, point.part_offset);
+      if (interpolates) part = interpolate(engine::part_pose(previous, point.part_offset), part, mix);
+      tendon_points_.push_back(part * point.position);
+    }
+    add_tendon(tendon, current, camera);
   }
   compute_bounds();
   build_batches();

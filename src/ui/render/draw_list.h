@@ -117,6 +117,7 @@ class DrawList {
   void update_materials(const engine::Snapshot& current);
   void update_tints(const engine::Snapshot& current);
   void add_instance(const ShapeDraw& shape, const Pose& pose, const float* tint, const DrawCamera& camera);
+  void add_tendon(const engine::RenderTendon& tendon, const engine::Snapshot& current, const DrawCamera& camera);
   void compute_bounds();
   void sort_opaque();
   void sort_transparent();
@@ -128,6 +129,8 @@ class DrawList {
   std::vector<MeshKey> meshes_;  // by mesh number
   std::vector<ShapeDraw> shapes_;
   std::vector<std::uint32_t> first_part_;  // by render shape: index of its first part in shapes_; one more at the end
+  ShapeDraw tendon_shape_;                 // a cylinder
+  std::vector<Vec3> tendon_points_;        // scratch: of one tendon, world
   std::vector<InstanceMaterial> materials_;
   std::map<const model::MeshModel*, std::shared_ptr<const model::MeshModel>> models_;
   std::map<const model::Image*, std::shared_ptr<const model::Image>> images_;

@@ -107,6 +107,7 @@ const std::vector<Measure>& measures() {
       {"solver", "arms, trees, legs and random trees: stock Bullet against the direct solver, 1/60 s", &measure_solver},
       {"swarm-300", "a clump of 300 six-part creatures: stock Bullet against Limber", &measure_swarm},
       {"pile-2000", "a pile of 2000 boxes: stock Bullet against Limber", &measure_pile},
+      {"terrain", "100 quadrupeds on 512 × 512 heights against a plane", &measure_terrain},
       {"threads", "100 and 1000 arms with two threads against one", &measure_threads},
       {"flock-1k", "1000 bodies with 30 neighbors each: cohesion and alignment", &run_flock<1000>},
       {"flock-10k", "10 000 such bodies", &run_flock<10000>},

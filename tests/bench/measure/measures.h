@@ -94,6 +94,7 @@ nlohmann::ordered_json measure_take(const MeasureOptions& options);
 
 /// Ticks the same arms with one thread and with two, alternating in 15 pairs of several ticks: both times, their ratio,
 /// and whether the states are identical.
+nlohmann::ordered_json measure_terrain(const MeasureOptions& options);
 nlohmann::ordered_json measure_threads(const MeasureOptions& options);
 
 }  // namespace limber

@@ -7,19 +7,9 @@
 namespace limber::sim::bullet {
 namespace {
 
-/// A limit gets a row if it is nearer than this plus the distance covered in two steps: rad, m.
-constexpr btScalar kAngularMargin = btScalar(0.05);
-constexpr btScalar kLinearMargin = btScalar(0.005);
-/// Largest repair speed of a hard lock or limit, rad/s and m/s, so that a joint torn apart closes without an impact.
-constexpr btScalar kMaxRepairSpeed = btScalar(20);
-/// The same for a limit. It is lower because contacts may have pushed the joint past its limit, and the repair presses
-/// against them.
-constexpr btScalar kMaxLimitRepairSpeed = btScalar(2);
+btScalar limit_margin(int axis) { return axis < 3 ? kLinearLimitMargin : kAngularLimitMargin; }
 
-btScalar limit_margin(int axis) { return axis < 3 ? kLinearMargin : kAngularMargin; }
-
-// Converts compliance (per load, at rest) to softness (per impulse): the solver repairs erp/h of the error per second.
-btScalar softness(const AxisSettings& s, btScalar h) { return s.stop_cfm * s.stop_erp / (h * h); }
+btScalar softness(const AxisSettings& s, btScalar h) { return stop_softness(s.stop_erp, s.stop_cfm, h); }
 
 // Clamps to a range; NaN becomes the minimum.
 template <class T>
@@ -74,6 +64,7 @@ void JointConstraint::reset(const Vec3& near_angles) {
   reaction_.reset();
   warm_start_.reset();
   repair_impulse_.fill(0);
+  ball_limits_.reset();
 }
 
 void JointConstraint::end_tick() {
@@ -111,6 +102,7 @@ const JointRows& JointConstraint::plan(JointRow* memory) {
   for (const int axis : {3, 4, 5, 0, 1, 2}) {
     if (axes_[at(axis)].locked()) plan_lock(axis);
   }
+  ball_limits_.plan(pose_, {axes_[5].stop_erp, axes_[5].stop_cfm, bounce_}, step_.h);
   warm_start_.begin_step(rows_);
   drives_.end_plan(pose_);
   repair_impulse_.fill(0);
@@ -142,32 +134,19 @@ void JointConstraint::plan_limit(int axis, bool upper) {
   const btScalar h = step_.h;
   const btScalar sign = upper ? btScalar(-1) : btScalar(1);
   const double limit = static_cast<double>(upper ? s.upper : s.lower);
-  const btScalar distance = sign * static_cast<btScalar>(value(axis) - limit);
-  const btScalar speed = sign * pose_.rates()[at(axis)];  // negative: approaching
-  if (distance > limit_margin(axis) + 2 * h * std::max(-speed, btScalar(0))) return;
-
-  const btScalar soft = softness(s, h);
-  btScalar min_speed = -distance / h;
-  btScalar repair_impulse = 0;
-  JointRow::Kind kind = JointRow::Kind::other;
-  if (distance < 0) {
-    min_speed *= s.stop_erp;
-    // a limit only pushes, but may revert its repair impulse of the last step; else the axis would bounce off at the
-    // repair speed
-    if (soft == 0) {
-      min_speed = std::min(min_speed, kMaxLimitRepairSpeed);
-      repair_impulse = repair_impulse_[at(axis)];
-      kind = JointRow::Kind::repair;
-    }
-  }
-  if (bounce_ > 0 && distance + h * speed <= 0 && -bounce_ * speed > min_speed) {
-    min_speed = -bounce_ * speed;
-    kind = JointRow::Kind::other;
-  }
+  const LimitState state{sign * static_cast<btScalar>(value(axis) - limit),
+                         sign * pose_.rates()[at(axis)],
+                         limit_margin(axis),
+                         s.stop_erp,
+                         softness(s, h),
+                         bounce_,
+                         repair_impulse_[at(axis)]};
+  if (!limit_is_near(state, h)) return;
+  const LimitRow row = limit_row(state, h);
   if (upper) {
-    rows_.add(axis, -min_speed, soft, -JointRow::kUnbounded, repair_impulse, kind);
+    rows_.add(axis, -row.min_speed, row.softness, -JointRow::kUnbounded, row.repair_impulse, row.kind);
   } else {
-    rows_.add(axis, min_speed, soft, -repair_impulse, JointRow::kUnbounded, kind);
+    rows_.add(axis, row.min_speed, row.softness, -row.repair_impulse, JointRow::kUnbounded, row.kind);
   }
 }
 
@@ -188,13 +167,15 @@ void JointConstraint::plan_lock(int axis) {
   if (axis >= 3) error = std::remainder(error, 2 * kPi);
   const btScalar soft = softness(s, step_.h);
   btScalar repair = static_cast<btScalar>(error) * s.stop_erp / step_.h;
-  if (soft == 0) repair = std::clamp(repair, -kMaxRepairSpeed, kMaxRepairSpeed);
+  if (soft == 0) repair = std::clamp(repair, -kMaxLockRepairSpeed, kMaxLockRepairSpeed);
   rows_.add(axis, repair, soft, -JointRow::kUnbounded, JointRow::kUnbounded, JointRow::Kind::lock);
 }
 
 void JointConstraint::set_impulses(const btSolverConstraint* rows, int count) {
-  for (int r = 0; r < count && r < rows_.size(); ++r) {
-    set_impulse(rows_[r], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
+  const int first = ball_limits_.count();
+  for (int r = 0; r < count && r < first; ++r) set_ball_impulse(r, rows[r].m_appliedImpulse);
+  for (int r = first; r < count && r < first + rows_.size(); ++r) {
+    set_impulse(rows_[r - first], rows[r].m_appliedImpulse, rows[r].m_jacDiagABInv);
   }
   end_substep();
 }
@@ -211,6 +192,13 @@ void JointConstraint::set_impulses(solver::IndexedSpan<const double> impulses) {
     set_impulse(row, to_scalar(impulses[r]), inverse_mobility);
   }
   end_substep();
+}
+
+void JointConstraint::set_ball_impulse(int row, btScalar impulse) {
+  const BallLimitRow& limit = ball_limits_[row];
+  const btScalar mobility = pose_.mobility(limit.jacobian(), limit.jacobian());
+  ball_limits_.set_impulse(row, impulse, mobility > SIMD_EPSILON ? 1 / (mobility + limit.row.softness) : 0);
+  reaction_.add_angular(limit.axis * impulse);
 }
 
 void JointConstraint::end_substep() {
@@ -231,7 +219,8 @@ void JointConstraint::set_impulse(const JointRow& row, btScalar impulse, btScala
 
 void JointConstraint::getInfo1(btConstraintInfo1* info) {
   std::array<JointRow, JointRows::kMax> memory;
-  info->m_numConstraintRows = plan(memory.data()).size();
+  plan(memory.data());
+  info->m_numConstraintRows = ball_limits_.count() + rows_.size();
   rows_ = {};
   info->nub = 0;
 }
@@ -242,11 +231,13 @@ void JointConstraint::getInfo2(btConstraintInfo2* info) {
     to[1] = v.y();
     to[2] = v.z();
   };
-  for (int r = 0; r < rows_.size(); ++r) {
-    const JointRow& row = rows_[r];
-    const AxisJacobian j = pose_.jacobian(row.axis);
+  const int first = ball_limits_.count();
+  for (int r = 0; r < first + rows_.size(); ++r) {
+    const bool is_ball_limit = r < first;
+    const JointRow& row = is_ball_limit ? ball_limits_[r].row : rows_[r - first];
+    const AxisJacobian j = is_ball_limit ? ball_limits_[r].jacobian() : pose_.jacobian(row.axis);
     const int skip = r * info->rowskip;
-    if (row.axis < 3) {
+    if (!is_ball_limit && row.axis < 3) {
       put(info->m_J1linearAxis + skip, -j.linear);
       put(info->m_J2linearAxis + skip, j.linear);
     }

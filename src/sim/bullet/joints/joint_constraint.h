@@ -7,6 +7,7 @@
 
 #include "sim/bullet/bullet.h"
 #include "sim/bullet/joints/axis_settings.h"
+#include "sim/bullet/joints/ball_limits.h"
 #include "sim/bullet/joints/joint_drives.h"
 #include "sim/bullet/joints/joint_pose.h"
 #include "sim/bullet/joints/joint_reaction.h"
@@ -28,6 +29,8 @@ class JointConstraint : public btTypedConstraint {
   /// 1e12). If a free angular axis becomes limited, its angle changes by full turns to be nearest to the limits'
   /// center.
   void set_axis(int axis, const AxisSettings& settings);
+  /// Sets the limits of the rotation as a whole, from the next substep on. They use stop_erp and stop_cfm of axis 5.
+  void set_ball_limits(const BallLimitSettings& settings) { ball_limits_.set(settings); }
   /// Sets only the goals of an axis: servo target, rest position of the spring, velocity, torque. A new target or rest
   /// position is interpolated linearly over the next tick (TargetInterpolator). Returns true if one of them changed.
   bool set_target(int axis, double target, double rest, double velocity, double torque = 0);
@@ -77,6 +80,10 @@ class JointConstraint : public btTypedConstraint {
   /// Reads the pose and plans the rows of the substep in `memory` (JointRows).
   const JointRows& plan(JointRow* memory);
   const JointRows& rows() const { return rows_; }
+  /// Limits of the rotation as a whole. getInfo2 writes their rows before rows().
+  const BallLimits& ball_limits() const { return ball_limits_; }
+  /// Sets the impulse of a row of the ball limits, before set_impulses().
+  void set_ball_impulse(int row, btScalar impulse);
   /// Sets the impulses of the planned rows, in their order, once the step is solved.
   void set_impulses(solver::IndexedSpan<const double> impulses);
   /// Sets the impulses of the rows just solved, in the order in which getInfo2 wrote them.
@@ -116,6 +123,7 @@ class JointConstraint : public btTypedConstraint {
   std::array<float, 6> repair_impulse_{};  // of the last substep, on a limit that is exceeded
   StepTiming step_;
   JointRows rows_;
+  BallLimits ball_limits_;
   btScalar bounce_ = 0;
   btScalar damping_ = 0;
 };

@@ -80,7 +80,7 @@ double JointPose::unwrapped(int axis, double raw) const {
 }
 
 void JointPose::predict_angles(btScalar h) {
-  const btVector3 angular_velocity = child_.getAngularVelocity() - parent_.getAngularVelocity();
+  const btVector3 angular_velocity = this->angular_velocity();
   for (int i = 0; i < 3; ++i) {
     if (locked(3 + i)) continue;
     const double change = static_cast<double>(dual_[at(i)].dot(angular_velocity) * h);
@@ -140,7 +140,7 @@ void JointPose::read_angles(const btVector3* axes_b, bool principal) {
 }
 
 void JointPose::read_rates() {
-  const btVector3 angular_velocity = child_.getAngularVelocity() - parent_.getAngularVelocity();
+  const btVector3 angular_velocity = this->angular_velocity();
   const btVector3 linear_velocity = child_.getLinearVelocity() + child_.getAngularVelocity().cross(arm_b_) -
                                     parent_.getLinearVelocity() - parent_.getAngularVelocity().cross(arm_a_);
   for (int i = 0; i < 3; ++i) {
@@ -149,9 +149,19 @@ void JointPose::read_rates() {
   }
 }
 
-Vec3 JointPose::relrot() const {
+btMatrix3x3 JointPose::rotation_matrix() const {
   const btMatrix3x3 a = parent_.getCenterOfMassTransform().getBasis() * frame_a_.getBasis();
-  const btMatrix3x3 r = a.transposeTimes(child_.getCenterOfMassTransform().getBasis() * frame_b_.getBasis());
+  return a.transposeTimes(child_.getCenterOfMassTransform().getBasis() * frame_b_.getBasis());
+}
+
+Quat JointPose::rotation() const {
+  btQuaternion rotation;
+  rotation_matrix().getRotation(rotation);
+  return from_bt(rotation);
+}
+
+Vec3 JointPose::relrot() const {
+  const btMatrix3x3 r = rotation_matrix();
   const auto element = [&r](int i, int j) { return static_cast<double>(r[i][j]); };
   Vec3 angles(fixed::atan2(element(2, 1), element(2, 2)),
               fixed::atan2(-element(2, 0), fixed::hypot(element(2, 1), element(2, 2))),

@@ -59,6 +59,10 @@ class JointPose {
   double rate(int axis) const { return static_cast<double>(rate_[at(axis)]); }
   const std::array<float, 6>& rates() const { return rate_; }
   Vec3 angles() const { return {angle_[0], angle_[1], angle_[2]}; }
+  /// Rotation of the child's joint frame in the parent's.
+  Quat rotation() const;
+  /// Angular velocity of the child relative to the parent, world.
+  btVector3 angular_velocity() const { return child_.getAngularVelocity() - parent_.getAngularVelocity(); }
   Vec3 offsets() const { return {offset_[0], offset_[1], offset_[2]}; }
   /// The present rotation as Rz(z)·Ry(y)·Rx(x), whatever the own order; z counts turns if axis 5 can exceed ±pi.
   Vec3 relrot() const;
@@ -79,6 +83,7 @@ class JointPose {
   double effective_inertia(int axis) const;
 
  private:
+  btMatrix3x3 rotation_matrix() const;
   void read(bool principal);
   void read_angles(const btVector3* axes_b, bool principal);
   void read_rates();

@@ -14,16 +14,19 @@ class JointReaction {
   void reset() { *this = {}; }
   /// Adds the impulse of a row about or along an axis, 0..5.
   void add(int axis, btScalar impulse) { substep_[at(axis)] += impulse; }
+  /// Adds an angular impulse, world.
+  void add_angular(const btVector3& impulse) { substep_angular_ += impulse; }
   /// Adds the impulses of a substep of `h` s. Those about the dual axes, which depend on the pose, are converted to the
   /// axes of the joint's frame on the parent.
   void end_substep(const JointPose& pose, btScalar h) {
-    btVector3 angular = pose.dual_axis(0) * substep_[3];
+    btVector3 angular = pose.dual_axis(0) * substep_[3] + substep_angular_;
     for (int i = 1; i < 3; ++i) angular += pose.dual_axis(i) * substep_[at(3 + i)];
     for (int i = 0; i < 3; ++i) {
       sum_[at(i)] += substep_[at(i)];
       sum_[at(3 + i)] += pose.linear_axis(i).dot(angular);
     }
     substep_.fill(0);
+    substep_angular_.setZero();
     time_ += h;
   }
   /// Ends a tick: averages the impulses.
@@ -40,6 +43,7 @@ class JointReaction {
 
  private:
   std::array<float, 6> substep_{};
+  btVector3 substep_angular_{0, 0, 0};
   std::array<float, 6> sum_{};  // over the current tick, N·s and N·m·s
   std::array<float, 6> mean_{};
   float time_ = 0;

@@ -129,7 +129,7 @@ bool attach(TreeNode& node, const bullet::JointConstraint& joint, bool forward) 
   return motion_axes(joint, forward ? arm_b : arm_a, forward ? 1 : -1, node.axis);
 }
 
-// Marks the bodies on which contacts, drives or gears act.
+// Marks the bodies on which contacts, drives, gears or tendons act.
 void SpanningTrees::find_acted_on() {
   acted_on_.assign(island_.pools->bodies.size(), 0);
   const btConstraintArray& contacts = island_.pools->contacts;
@@ -139,9 +139,7 @@ void SpanningTrees::find_acted_on() {
   for (const Island::Joint& joint : island_.joints) {
     if (joint.constraint->has_drive()) acted_on_[joint.body_a] = acted_on_[joint.body_b] = 1;
   }
-  for (const Island::Gear& gear : island_.gears) {
-    for (int i = 0; i < gear.constraint->jacobians().size(); ++i) acted_on_[gear.bodies[i]] = 1;
-  }
+  for (const int body : island_.coupled_bodies) acted_on_[body] = 1;
 }
 
 int SpanningTrees::root_of(int body) {

@@ -76,7 +76,7 @@ class SpanningTrees {
   IndexedArray<int> joint_start_;  // by body: the joints of its trees are body_joints_[joint_start_[body]] ...
   IndexedArray<int> body_joints_;
   IndexedArray<int> stack_;
-  IndexedArray<unsigned char> acted_on_;  // by body: it has contacts, drives or gears
+  IndexedArray<unsigned char> acted_on_;  // by body: it has contacts, drives, gears or tendons
 };
 
 /// Inertia of a body at its present pose.

@@ -20,8 +20,9 @@ constexpr std::array kTitles = {Title{"scene", "Scene"},         Title{"sim", "W
                                 Title{"transport", "Transport"}, Title{"preset", "Presets"},  Title{"take", "Takes"},
                                 Title{"edit", "Undo"},           Title{"osc", "OSC counters"}};
 // Titles of the groups of a body's members.
-constexpr std::array kMembers = {Title{"part", "Parts"}, Title{"joint", "Joints"}, Title{"motor", "Motors"},
-                                 Title{"sensor", "Sensors"}, Title{"behavior", "Behaviors"}};
+constexpr std::array kMembers = {Title{"part", "Parts"},     Title{"joint", "Joints"},
+                                 Title{"motor", "Motors"},   Title{"sensor", "Sensors"},
+                                 Title{"tendon", "Tendons"}, Title{"behavior", "Behaviors"}};
 
 std::size_t rank(std::string_view name) {
   const auto* found = std::find_if(kTitles.begin(), kTitles.end(), [&](const Title& t) { return t.name == name; });
