@@ -241,6 +241,19 @@ TEST(PartPairs, OverlapsAreReportedOnce) {
       << lines[0];
 }
 
+// parts that don't collide anyway
+TEST(PartPairs, OverlapsWithoutSelfCollisionAreNotReported) {
+  WorldFixture s;
+  Body& body = s.body("body");
+  s.set(body.id(), "self_collision", {0});
+  const Part& a = s.part(body, sphere_model(0.1), 1);
+  const Part& b = s.part(body, sphere_model(0.1), 1, {{0, 0, 0.199}, quat_identity()});
+  const std::uint64_t seen = log_newest();
+  s.ticks(3);
+  EXPECT_TRUE(lines_since(seen).empty());
+  EXPECT_TRUE(body.pairs().excludes(a, b));  // also after self_collision is switched on
+}
+
 /// Throws two boxes of different bodies at each other. Returns true if they pass through each other.
 bool different_bodies_pass(const std::function<void(WorldFixture&, Part&, Part&)>& prepare) {
   WorldFixture s;

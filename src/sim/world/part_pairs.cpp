@@ -9,6 +9,7 @@
 #include "base/log/log.h"
 #include "base/memory/archive.h"
 #include "model/overlap.h"
+#include "sim/bullet/collision_filter.h"
 #include "sim/bullet/island_world.h"
 #include "sim/shapes/geometry.h"
 #include "sim/world/body.h"
@@ -21,6 +22,11 @@ namespace limber::sim {
 namespace {
 
 constexpr int kPairBits = 30;  // of a part's index, in the packed value of an undo step
+
+// Returns true if the groups, masks and self_collision of two parts let them collide.
+bool may_collide(Part& a, Part& b) {
+  return bullet::CollisionFilter::of(a.rigid()).accepts(bullet::CollisionFilter::of(b.rigid()));
+}
 
 bool pair_before(const PartPair& pair, const std::pair<std::size_t, std::size_t>& key) {
   return std::pair<std::size_t, std::size_t>(pair.a, pair.b) < key;
@@ -160,7 +166,7 @@ void PartPairs::find_new_overlaps(OverlapReport& report) {
     const auto b = static_cast<std::size_t>(overlap.b);
     if (!set_overlaps(a, b)) continue;
     apply(a, b);
-    report.add(body_, *parts[a], *parts[b], overlap.depth);
+    if (may_collide(*parts[a], *parts[b])) report.add(body_, *parts[a], *parts[b], overlap.depth);
   }
 }
 
