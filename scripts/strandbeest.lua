@@ -28,7 +28,7 @@ sim.substeps = 14 -- its loops stay closed within 0.1 mm
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"), { friction = 1 })
 visuals.look.style = "studio"
 visuals.background = vec3(0.1, 0.12, 0.95)
-visuals.camera:look_at(vec3(1.7, -2.3, 1.0), vec3(0.02, 0, 0.4))
+visuals.camera:look_at(vec3(2, -2.6, 1.5), vec3(0, 0, kHeight))
 
 -- Returns the point at the distances r from p and s from q, on the left or right of the way from p to q.
 local function meet(p, r, q, s, side)
@@ -93,7 +93,7 @@ local beest = sim:add_body("beest", { self_collision = false })
 local along_axis = quat.euler(math.pi / 2, 0, 0) -- turns a cylinder from z to the axis
 local tube = sim:add_cylinder_shape("tube", 0.016, 6.6 * kGap)
 local shape = sim:add_compound_shape("frame")
-for _, place in ipairs { vec3(-a, 0, -l), vec3(), vec3(a, 0, -l) } do shape:add_child(tube, kUnit * place, along_axis) end
+for _, x in ipairs { -a, 0, a } do shape:add_child(tube, kUnit * vec3(x, 0, x == 0 and 0 or -l), along_axis) end
 for _, y in ipairs { -3.25, 0, 3.25 } do
   for _, side in ipairs { -1, 1 } do
     local way = kUnit * vec3(side * a, 0, -l)
