@@ -79,7 +79,7 @@ for n = 1, 3 do
   local arm = robot:add_part(name, arm_shape, { mass = 0.6, position = (hip + elbow) / 2, rotation = turn * quat.euler(0, angle, 0) })
   local joint = robot:add_joint(name, "base", arm, { position = hip, axis = turn * vec3(0, 1, 0) })
   arms[n] = { turn = turn, home = angle, motor = robot:add_motor(joint, { max_angular_force = 150 }) }
-  for side, y in pairs { left = kPair, right = -kPair } do
+  for side, y in ipairs { kPair, -kPair } do
     local aside = turn * vec3(0, y, 0)
     local from, to = elbow + aside, start + turn * vec3(kPlatform, y, 0)
     local way = to - from
