@@ -37,11 +37,12 @@ local belt = add_box("belt", vec3(1.05, 0.1, 0.06), vec3(0, 0, kBelt - 0.03), da
 for i, y in ipairs { -0.056, 0.056 } do
   add_box("rail_" .. i, vec3(1.05, 0.01, 0.05), vec3(0, y, kBelt - 0.009), gray).friction = 0.1
 end
+belt.surface_velocity = vec3(params.belt, 0, 0)
 local stop = add_box("stop", vec3(0.02, 0.1, 0.06), vec3(kPick + 0.044, 0, kBelt + 0.02), gray)
 for i, x in ipairs { -0.42, 0.42 } do
   add_box("leg_" .. i, vec3(0.06, 0.08, kBelt - 0.06), vec3(x, 0, (kBelt - 0.06) / 2), gray)
 end
-local zone = stop:add_zone("arrival", { position = vec3(-0.044, 0, 0), radius = 0.02 })
+local arrival = stop:add_zone("arrival", { position = vec3(-0.044, 0, 0), radius = 0.02 })
 
 -- Things: shape, mass in kg, hue
 local things = {
@@ -58,7 +59,7 @@ for n, thing in ipairs(things) do
   thing.part.rolling_friction = 0.002 -- the ball stays where it is put
 end
 
--- Gantry: a carriage runs along the beam, a column slides up and down, and two fingers slide at its lower end
+-- Gantry: a carriage runs along the beam, and a column with a palm slides up and down in it
 for i, x in ipairs { -0.6, 0.6 } do
   for k, y in ipairs { -0.2, 0.2 } do
     add_box("post_" .. i .. k, vec3(0.04, 0.04, kBeam + 0.02), vec3(x, y, kBeam / 2 + 0.01), gray)
@@ -78,12 +79,15 @@ add_part("carriage", vec3(0.14, 0.12, 0.14), 3, vec3(kPick, 0, kBeam), orange)
 add_part("column", vec3(0.04, 0.04, 0.5), 2, vec3(kPick, 0.085, kTop + 0.24), white)
 add_part("palm", vec3(0.08, 0.22, 0.03), 0.5, vec3(kPick, 0, kTop), orange)
 local function add_slide(name, parent, child, axis, opts)
-  local joint = gantry:add_joint(name, parent, child, { type = "prismatic", axis = axis, position = gantry:part(child).position })
+  local place = gantry:part(child).position
+  local joint = gantry:add_joint(name, parent, child, { type = "prismatic", axis = axis, position = place })
   return gantry:add_motor(joint, opts)
 end
 local travel = add_slide("travel", "beam", "carriage", vec3(1, 0, 0), { max_linear_force = 500 })
 local hoist = add_slide("hoist", "carriage", "column", vec3(0, 0, 1), { max_linear_force = 500 })
 gantry:add_joint("wrist", "column", "palm", { type = "fixed" })
+
+-- Fingers: one motor closes both, through a gear
 local function add_finger(name, side)
   local position = vec3(kPick, side * (kOpen + 0.008), kTop - 0.08)
   local finger = add_part(name, vec3(0.04, 0.016, 0.13), 0.15, position, white)
@@ -94,7 +98,7 @@ local function add_finger(name, side)
 end
 local left, grip = add_finger("left", 1)
 local right, follower = add_finger("right", -1)
-sim:add_gear(grip.joint, follower.joint, 1) -- one motor moves both fingers
+sim:add_gear(grip.joint, follower.joint, 1)
 grip.mode, grip.damping = "torque", 40
 
 -- Grip: a light touch, more in proportion to the friction that the fingers feel
@@ -107,56 +111,54 @@ local function hold(dt)
 end
 local function touches() return left.contact_normal_force > 0.5 and right.contact_normal_force > 0.5 end
 
--- Work: each step moves the palm to a place, with open or closed fingers, and names the next step. The pace of the
--- gantry does not change the steady ones.
-local kLow = kBelt + 0.165 -- height of the palm at which the fingers reach for a thing
+-- Work: each step moves the palm to a height or along the belt in a time, with open or closed fingers. Then the next one
+-- begins. The belt runs in some steps; the pace does not change the steady ones
 local steps = {
   wait = { time = 0.4, belt = true, next = "reach" },
-  reach = { time = 0.6, z = function() return kLow end, next = "close" },
+  reach = { time = 0.6, height = "low", next = "close" },
   close = { time = 0.6, closed = true, steady = true, next = "lift" },
-  lift = { time = 0.9, closed = true, z = function() return kLow + params.lift end, next = "carry" },
-  carry = { time = 1.5, closed = true, belt = true, x = kPlace, next = "lower" },
-  lower = { time = 0.9, closed = true, z = function() return kLow + 0.001 end, next = "release" },
+  lift = { time = 0.9, height = "high", closed = true, next = "carry" },
+  carry = { time = 1.5, x = kPlace, closed = true, belt = true, next = "lower" },
+  lower = { time = 0.9, height = "low", closed = true, next = "release" },
   release = { time = 0.3, steady = true, next = "rise" },
-  rise = { time = 0.5, belt = true, z = function() return kTop end, next = "back" },
-  back = { time = 1.2, belt = true, x = kPick, next = "wait" },
+  rise = { time = 0.5, height = "top", belt = true, next = "back" },
+  back = { time = 1.2, x = kPick, belt = true, next = "wait" },
 }
-local function go(name)
-  state.step, state.time, state.from = name, 0, { state.x, state.z }
+local kLow = kBelt + 0.165 -- of the palm: the fingers are beside a thing
+local function height_of(name)
+  if name == "top" then return kTop end
+  return name == "low" and kLow or kLow + params.lift
 end
+local function begin(name) state.step, state.time, state.from = name, 0, { state.x, state.z } end
 state.x, state.z = state.x or kPick, state.z or kTop
-if not state.step then go("wait") end
--- from a to b with a smooth start and end, for s from 0 to 1
-local function glide(a, b, s) return a + (b - a) * s * s * s * (10 + s * (6 * s - 15)) end
+if not state.step then begin("wait") end
 
+-- Motion: from a to b with a smooth start and end, for s from 0 to 1
+local function glide(a, b, s) return a + (b - a) * s * s * s * (10 + s * (6 * s - 15)) end
 sim:on_step(function(dt)
   local step = steps[state.step]
   state.time = state.time + (step.steady and 1 or params.speed) * dt
-  if state.step == "wait" and zone.count == 0 then state.time = 0 end
+  if state.step == "wait" and arrival.count == 0 then state.time = 0 end
   local s = math.min(1, state.time / step.time)
   if step.x then state.x = glide(state.from[1], step.x, s) end
-  if step.z then state.z = glide(state.from[2], step.z(), s) end
+  if step.height then state.z = glide(state.from[2], height_of(step.height), s) end
   travel.target, hoist.target = state.x - kPick, state.z - kTop
   belt.surface_velocity = vec3(step.belt and params.belt or 0, 0, 0)
-
   if step.closed then hold(dt) else state.force = -2 end
   grip.target_torque = 2 * state.force -- both fingers share it
-  if s < 1 then return end
-  if step.closed and not touches() then go("release") else go(step.next) end
+  if s == 1 then begin(step.closed and not touches() and "release" or step.next) end
 end)
 
--- Colors of the fingers: blue without a load, red at 15 N
+-- Colors: a finger is blue without a load, red at 15 N
 sim:on_step(function()
   for _, finger in ipairs { left, right } do
     local load = math.clamp(finger.contact_normal_force / 15, 0, 1)
     finger.tint = vec3(0.6 * (1 - load), 0.9 * math.sqrt(load), 1)
   end
 end)
-sim:every(0.05, function()
-  osc:send("/grip", left.contact_normal_force, left.contact_friction_force)
-end)
+sim:every(0.05, function() osc:send("/grip", left.contact_normal_force, left.contact_friction_force) end)
 
--- A thing that fell to the floor is put back
+-- Rescue: a thing that fell to the floor is put back
 sim:every(1, function()
   for _, thing in ipairs(things) do
     if thing.part.position.z < kBelt - 0.1 then

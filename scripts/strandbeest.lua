@@ -20,7 +20,7 @@ local h, i = 65.7, 49 -- sides of the lower triangle, with g: heel to toe, toe t
 local kUnit = 0.01 -- m, the unit of these numbers
 local kGap = 0.15 -- m, from one pair of legs to the next
 local kHeight = 0.95 -- m, of the cranks at the start
-local axis = vec3(0, 1, 0) -- of all joints
+local axis = vec3(0, 1, 0) -- direction of the axes of all joints
 
 -- Floor and view
 sim.gravity = vec3(0, 0, -9.81)
@@ -30,7 +30,7 @@ visuals.look.style = "studio"
 visuals.background = vec3(0.1, 0.12, 0.95)
 visuals.camera:look_at(vec3(2, -2.6, 1.5), vec3(0, 0, kHeight))
 
--- Returns the point at the distances r from p and s from q, on the left or right of the way from p to q.
+-- Circles: the point at the distances r from p and s from q, on the left or right of the way from p to q
 local function meet(p, r, q, s, side)
   local way = q - p
   local length = way:length()
@@ -40,7 +40,7 @@ local function meet(p, r, q, s, side)
   return p + along * way + aside * vec3(-way.z, 0, way.x)
 end
 
--- Returns the joints of a leg for an angle of its crank; x is outward, z up, the axis of the crank is at 0.
+-- Joints of a leg for an angle of its crank: x is outward, z up, and the axis of the crank is at 0
 local function joints_of(angle)
   local at = { pivot = vec3(a, 0, -l), pin = m * vec3(math.cos(angle), 0, math.sin(angle)) }
   at.knee = meet(at.pin, j, at.pivot, b, "left")
@@ -50,8 +50,8 @@ local function joints_of(angle)
   return at
 end
 
--- Rods: capsules between corners, which are relative to the first one. `layer` moves them along the axis, so that rods
--- of a leg pass each other.
+-- Rods: capsules between corners, the first of which is the origin. `layer` moves them along the axis, so that the rods
+-- of a leg pass each other
 local function add_rods(name, corners, layer)
   local shape = sim:add_compound_shape(name)
   for n = 1, #corners == 2 and 1 or #corners do
@@ -80,13 +80,11 @@ local masses = { upper = 0.4, lower = 0.45, knee_rod = 0.15, ankle_rod = 0.18, p
 shapes.lower:add_child(sim:add_sphere_shape("foot", 0.022), kUnit * meet(vec3(), i, vec3(g, 0, 0), h, "right"))
 
 -- Sails: a cloth in each upper triangle
-do
-  local corners, last = {}, vec3(b, 0, 0)
-  for _, corner in ipairs { vec3(), last, meet(vec3(), d, last, e, "right") } do
-    for _, y in ipairs { -0.002, 0.002 } do corners[#corners + 1] = kUnit * corner + vec3(0, y, 0) end
-  end
-  shapes.upper:add_child(sim:add_convex_mesh_shape("sail", corners))
+local sail = {}
+for _, corner in ipairs { vec3(), vec3(b, 0, 0), meet(vec3(), d, vec3(b, 0, 0), e, "right") } do
+  for _, y in ipairs { -0.002, 0.002 } do sail[#sail + 1] = kUnit * corner + y * axis end
 end
+shapes.upper:add_child(sim:add_convex_mesh_shape("sail", sail))
 
 -- Frame
 local beest = sim:add_body("beest", { self_collision = false })
@@ -151,7 +149,7 @@ local function add_leg(name, crank, y, angle, back)
   connect("ankle", pivot_rod, ankle_rod)
   connect("hip", upper, heel_rod)
   connect("ankle", pivot_rod, lower)
-  -- these close the three loops
+  -- these three close loops
   connect("pin", beest:part(crank), knee_rod, "spherical")
   connect("pin", beest:part(crank), ankle_rod, "spherical")
   connect("heel", lower, heel_rod, "spherical")
@@ -159,6 +157,8 @@ local function add_leg(name, crank, y, angle, back)
   upper.tint, lower.tint = vec3(hue, 0.85, 1), vec3(hue, 0.75, 0.85)
   for _, rod in ipairs { pivot_rod, knee_rod, ankle_rod, heel_rod } do rod.tint = vec3(0.1, 0.2, 0.9) end
 end
+
+-- Twelve legs: three pairs on each crank
 for _, side in ipairs { 1, -1 } do
   local crank = side == 1 and "left" or "right"
   for n = 1, 3 do
@@ -174,5 +174,7 @@ sim:on_step(function(dt)
   state.left, state.right = state.left + (1 - params.turn) * angle, state.right + (1 + params.turn) * angle
   cranks.left.target, cranks.right.target = state.left, state.right
 end)
+
+-- A push from the right, and a camera that goes along
 osc:on("/push", function(strength) frame:apply_impulse(vec3(0, strength or 20, 0)) end)
 sim:on_start(function() visuals.camera:follow(frame) end)

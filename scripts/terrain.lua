@@ -3,7 +3,7 @@
 -- Try while it runs:   oscsend 127.0.0.1 9003 /scene/stride f 0.05
 --                      oscsend 127.0.0.1 9003 /scene/turn f 0.4
 --                      oscsend 127.0.0.1 9003 /push f 4
--- Listen:              oscdump 9002     /foot NAME FORCE 20 times per second, /step NAME FORCE X Y Z for each landing
+-- Listen:              oscdump 9005     /foot NAME FORCE 20 times per second, /step NAME FORCE X Y Z for each landing
 
 -- Long waves and short bumps, level where it starts
 local function height(x, y)
