@@ -26,8 +26,8 @@ local kPen = 0.1 -- length of the pen below the platform
 sim.gravity = vec3(0, 0, -9.81)
 visuals.camera:look_at(vec3(-0.85, -1.58, 1.3), vec3(0, 0, 0.87))
 
--- Returns the angle of an arm below the horizontal for a place of the platform, as seen from the axis of the arm: x is
--- outward, y along the axis, z up. Three lengths give A cos(angle) + B sin(angle) = C.
+-- Inverse kinematics: the angle of an arm below the horizontal, for a place of the platform: x toward the arm, y along
+-- its axis, z up from the axes. The length of the rods gives A cos(angle) + B sin(angle) = C
 local function angle_of(x, y, z)
   local u = x + kPlatform - kBase
   local A, B, C = 2 * kArm * u, -2 * kArm * z, u * u + y * y + z * z + kArm * kArm - kRod * kRod

@@ -111,8 +111,8 @@ local function hold(dt)
 end
 local function touches() return left.contact_normal_force > 0.5 and right.contact_normal_force > 0.5 end
 
--- Work: each step moves the palm to a height or along the belt in a time, with open or closed fingers. Then the next one
--- begins. The belt runs in some steps; the pace does not change the steady ones
+-- Work: each step moves the palm to a height or along the belt in a time, with open or closed fingers, and names the
+-- next one. The belt runs in some steps; the pace does not change the steady ones
 local steps = {
   wait = { time = 0.4, belt = true, next = "reach" },
   reach = { time = 0.6, height = "low", next = "close" },
