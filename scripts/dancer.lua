@@ -94,7 +94,7 @@ for _, side in ipairs { 1, -1 } do
   add_ball(name .. "_shin", name .. "_foot", ankle, down, 0.7, 0.3, 3)
 end
 
--- The skirt passes through what it covers
+-- The skirt does not collide with the belly and the thighs inside it
 for _, name in ipairs { "belly", "left_thigh", "right_thigh" } do dancer:exclude_pair("skirt", name) end
 
 -- Sliders

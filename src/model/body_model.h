@@ -151,6 +151,8 @@ struct TendonModel {
     int link = 0;  ///< Index into BodyModel::links.
     Vec3 position{0, 0, 0};
   };
+  static constexpr std::size_t kMaxPoints = 64;
+
   std::string name;
   std::vector<Point> points;
   double stiffness = 0;          ///< N/m

@@ -92,6 +92,28 @@ TEST(Lockstep, RunsAsFastAsRequested) {
   EXPECT_EQ(show.engine.world().tick(), 100U);
 }
 
+// The second in which a panic can't be ended by another one is simulated time: passes without ticks don't count.
+TEST(Lockstep, ThePanicsFirstSecondIsSimulatedTime) {
+  const SceneFile scene(kScene);
+  Show show(lockstep_options(scene.path()));
+  const auto panic = [&] {
+    show.link.command_queue.push_urgent({UrgentKind::panic,
+                                         message("/transport/panic"),
+                                         {CommandSource::panel},
+                                         show.link.command_queue.next_arrival()});
+    show.ticks(1);
+  };
+  panic();
+  show.send("/transport/step", 30);
+  show.ticks(200);
+  panic();
+  EXPECT_TRUE(show.engine.world().panic().on()) << "after half a second";
+  show.send("/transport/step", 31);
+  show.ticks(200);
+  panic();
+  EXPECT_FALSE(show.engine.world().panic().on()) << "after a second";
+}
+
 TEST(Lockstep, TakesReplayToTheSameState) {
   const SceneFile scene(kScene);
   const std::string take = scene.path() + ".take";

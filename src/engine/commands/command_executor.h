@@ -12,7 +12,7 @@ class CommandExecutor {
   struct Execution {
     int work = 0;          ///< Cost in units of LiveInput::kPassWork, in addition to 1.
     bool rewound = false;  ///< The message was a request to rewind.
-    bool applied = false;
+    bool applied = false;  ///< It set a value or called an action.
   };
   /// Executes a message of `source` and reports the result. Queues it for the handlers of the scene, which are called
   /// after all messages of the pass have taken effect.

@@ -82,12 +82,12 @@ void LiveInput::execute_messages(bool may_step) {
 }
 
 // Measures the age of a panic in real time, or with --fast and --lockstep in simulated time, so that equal runs have
-// equal results.
+// equal results. With --lockstep, the number of passes depends on real time, so the time of the world counts.
 void LiveInput::update_panic_timer(bool may_step) {
   sim::World& world = show_.session->world;
   std::optional<double> step;
-  if (!show_.options.in_real_time()) step = may_step ? world.timestep() : 0;
-  if (!panic_timer_.update(world.panic(), show_.options.clock(), step)) return;
+  if (show_.options.fast) step = may_step ? world.timestep() : 0;
+  if (!panic_timer_.update(world.panic(), show_.options.lockstep ? world.time() : show_.options.clock(), step)) return;
   world.panic().end_first_second();
   record_event({TakeEvent::Kind::panic_settled, 0});
 }

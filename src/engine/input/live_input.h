@@ -37,8 +37,8 @@ class PanicTimer {
  public:
   static constexpr double kSeconds = 1;
 
-  /// Call it once per pass, at the real time `now` (s). `step`: seconds to add to the panic's age; without a value, the
-  /// real time since the last call. Returns true when the first second is over.
+  /// Call it once per pass, at the time `now` (s). `step`: seconds to add to the panic's age; without a value, the time
+  /// since the last call. Returns true when the first second is over.
   bool update(const sim::Panic& panic, double now, std::optional<double> step);
   /// Restarts the measurement at real time `now`.
   void restart(double now);
@@ -55,7 +55,8 @@ class StepRequests {
   static constexpr std::size_t kMax = 4096;
   static constexpr std::size_t kMaxQueries = 256;
 
-  /// Notes a request for ticks that was accepted.
+  /// Notes a request for ticks that was accepted, or discarded because a pause overtook it. Beyond kMax, it gets no
+  /// answer.
   void add(const CommandOrigin& origin);
   /// Postpones a query whose sender waits for ticks. Returns true if the message was postponed.
   bool postpone(const Message& message, const CommandOrigin& origin);

@@ -102,7 +102,8 @@ void MjcfFileReader::read_joint(const MjcfElement& element, MjcfBody& body, Mjcf
 void MjcfFileReader::read_limits(const MjcfElement& element, MjcfClass cls, MjcfJoint& joint) {
   const bool limited = reader_.limited(element, cls, "limited", "range");
   if (joint.type == JointType::spherical) {
-    return limited ? read_ball_range(reader_, element, cls, joint) : void();
+    if (limited) read_ball_range(reader_, element, cls, joint);
+    return;
   }
   const double unit = joint.type == JointType::revolute && reader_.compiler.degrees ? kPi / 180 : 1;
   joint.reference = reader_.number(element, cls, "ref", 0) * unit;

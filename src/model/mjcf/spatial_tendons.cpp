@@ -19,7 +19,6 @@ namespace limber::model {
 
 namespace {
 
-constexpr std::size_t kMaxTendonSites = 64;  // as sim::Tendon::kMaxPoints
 constexpr std::size_t kMaxTendons = 10'000;
 constexpr double kMaxStiffness = 1e9;
 constexpr double kMaxDamping = 1e6;
@@ -65,8 +64,8 @@ void SpatialTendons::read_path(const MjcfElement& element, const FindSite& find_
     reader_.check_attributes(e, "site of a tendon");
     const std::optional<TendonModel::Point> point = find_site(e);
     if (!point) continue;
-    if (tendon.points.size() >= kMaxTendonSites) {
-      reader_.unsupported(e, fmt::format("<spatial>: sites after the first {} ignored", kMaxTendonSites),
+    if (tendon.points.size() >= TendonModel::kMaxPoints) {
+      reader_.unsupported(e, fmt::format("<spatial>: sites after the first {} ignored", TendonModel::kMaxPoints),
                           "Split the tendon.", Severity::warning);
       return;
     }

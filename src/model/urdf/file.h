@@ -108,6 +108,9 @@ struct UrdfLoop {
   double friction = 0;
 };
 
+/// Names a loop in messages: "loop 'name'", or "a loop". [any]
+std::string shown_loop(const UrdfLoop& loop);
+
 /// A named frame on a link, such as a <site> of MJCF.
 struct UrdfFrame {
   std::string name;

@@ -67,8 +67,7 @@ class LoopBuilder {
     for (std::size_t node = 0; node < build_.tree.size() && node < 200; ++node) names.push_back(build_.link(node).name);
     build_.problems.error(loop.line,
                           fmt::format("{}: its {} link '{}' is not part of the tree{}; the loop stays open",
-                                      loop.name.empty() ? "a loop" : "loop '" + printable(loop.name) + "'", side,
-                                      printable(name), name_hint(name, names)),
+                                      shown_loop(loop), side, printable(name), name_hint(name, names)),
                           "Write the name of a <link> of this file.");
     return {};
   }

@@ -81,14 +81,17 @@ Inertial declared_inertial(UrdfBuildContext& build, const UrdfLink& link) {
   return out;
 }
 
-void drop_planes(UrdfBuildContext& build, LinkModel& link, int line) {
+// Removes planes and heightfields from a link that moves.
+void drop_ground(UrdfBuildContext& build, LinkModel& link, int line) {
   const auto found = std::ranges::find_if(link.collisions, [](const PlacedShape& s) { return is_ground(s.shape); });
   if (found == link.collisions.end()) return;
-  const char* const kind = found->shape.kind == ShapeKind::plane ? "<plane>" : "heightfield";
+  const bool is_plane = found->shape.kind == ShapeKind::plane;
   std::erase_if(link.collisions, [](const PlacedShape& s) { return is_ground(s.shape); });
   build.problems.error(
-      line, fmt::format("link '{}' moves; its {} collision shape is ignored", printable(link.name), kind),
-      fmt::format("Use a box, or attach the {} to the fixed root.", kind[0] == '<' ? "plane" : "heightfield"));
+      line,
+      fmt::format("link '{}' moves; its {} collision shape is ignored", printable(link.name),
+                  is_plane ? "<plane>" : "heightfield"),
+      fmt::format("Use a box, or attach the {} to the fixed root.", is_plane ? "plane" : "heightfield"));
 }
 
 void report_root(UrdfBuildContext& build, const UrdfLink& root, bool has_mass, double merged_mass) {
@@ -137,7 +140,7 @@ class MassBuilder {
         const bool estimated = link.inertial.mass <= 0;
         if (estimated) estimate(link, lines_[i]);
         regularize(link, lines_[i], estimated || connectors_[i]);
-        drop_planes(build_, link, lines_[i]);
+        drop_ground(build_, link, lines_[i]);
       }
       if (link.collisions.empty() && link.visuals.empty() && !connectors_[i]) {
         build_.problems.note(

@@ -1,6 +1,5 @@
 // Each mesh is loaded once for each scale.
 #include "model/urdf/mesh_loader.h"
-#include "model/mesh/heightfield.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "model/look/mesh_look.h"
+#include "model/mesh/heightfield.h"
 #include "model/mesh/load.h"
 
 namespace limber::model {
@@ -61,15 +61,21 @@ bool MeshLoader::load(UrdfShape& shape, const std::string& owner, bool drawn) {
   return true;
 }
 
+namespace {
+
+// `size`: width, length and height
+Result<ShapeModel> heightfield_of(const Image& image, const Vec3& size) {
+  const std::vector<double> heights = normalized_heights(heights_of(image), size.z);
+  return heightfield_shape({image.width, image.height, size.x, size.y, heights}, image.file);
+}
+
+}  // namespace
+
 bool MeshLoader::load_heights(UrdfShape& shape, const std::string& owner) {
   if (shape.heights_uri.empty()) return true;
   const Result<std::shared_ptr<const Image>>& image = image_at(shape.heights_uri);
-  Result<ShapeModel> field = Error{image ? "" : image.error()};
-  if (image) {
-    std::vector<double> heights = normalized_heights(heights_of(**image), shape.mesh_scale.z);
-    field = heightfield_shape({(*image)->width, (*image)->height, shape.mesh_scale.x, shape.mesh_scale.y, heights},
-                              (*image)->file);
-  }
+  const Result<ShapeModel> field =
+      image ? heightfield_of(**image, shape.mesh_scale) : Result<ShapeModel>(Error{image.error()});
   if (!field) {
     const auto [text, fix] = split_fix(field.error(), "Fix the image.");
     problems_.error(shape.line, fmt::format("{} heightfield ignored: {}", owner, text), fix);

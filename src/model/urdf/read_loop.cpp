@@ -24,6 +24,10 @@ bool closes_loops(JointType type) { return type != JointType::floating; }
 
 }  // namespace
 
+std::string shown_loop(const UrdfLoop& loop) {
+  return loop.name.empty() ? "a loop" : fmt::format("loop '{}'", printable(loop.name));
+}
+
 bool UrdfReader::loop_sides(const Element& element, const std::string& owner, UrdfLoop& out) {
   for (const char* const side : {"parent", "child"}) {
     const Element* const found = unique_child(element, side, owner);
@@ -46,7 +50,7 @@ std::optional<UrdfLoop> UrdfReader::loop(const Element& element) {
   const char* const name = element.Attribute("name");
   const std::optional<std::string> fault = name ? name_error(name) : std::nullopt;
   if (name && !fault) out.name = name;
-  const std::string owner = out.name.empty() ? std::string("a loop") : fmt::format("loop '{}'", printable(out.name));
+  const std::string owner = shown_loop(out);
   if (fault) problems.warning(out.line, fmt::format("{}: name ignored: {}", owner, *fault), kExample);
   check_attributes(element, {"name", "type"});
   if (!loop_sides(element, owner, out)) return std::nullopt;

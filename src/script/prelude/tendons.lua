@@ -4,7 +4,6 @@ local api, ctx, answer, number, classes = P.api, P.ctx, P.answer, P.answer.numbe
 local fail, describe, handle_of = P.fail, P.describe, P.handle_of
 local V, ffi, istype = P.V, P.ffi, P.ffi.istype
 local tendons, parts = 9, 1  -- kinds of lists
-local max_points = 64
 local body, part, tendon = classes.body, classes.part, classes.tendon
 
 P.derive_members(tendon)
@@ -56,7 +55,6 @@ body.methods.add_tendon = function(h, key, opts)
     fail("add_tendon: points is a list of points {part, x, y, z}, not %s", describe(points))
   end
   local count = #points
-  if count > max_points then fail("add_tendon: a tendon has at most %d points, not %d", max_points, count) end
   local numbers = ffi.new("double[?]", 5 * math.max(count, 1))
   for i = 1, count do write_point(h, points[i], "add_tendon: point " .. i, numbers + 5 * (i - 1)) end
   local code = api.add_tendon(ctx, h.slot_, h.generation_, key, #key, numbers, count)

@@ -11,10 +11,10 @@
 
 namespace limber::sim::collision {
 
-/// A triangle is touched in its face, unless the nearest point is on an edge that stands out: then any direction
-/// between the two faces of the edge is the normal. At an edge of a flat or hollow place, the faces do what is needed,
-/// so that nothing is caught by an edge that two triangles share. Contacts with different normals have manifolds of
-/// their own, at most four. [sim]
+/// A contact has the normal of the triangle's face. Only at a ridge, an edge from which both triangles slope away, its
+/// normal is the direction between the closest points, which is between the normals of both faces. An edge of a flat
+/// or hollow place has no contacts of its own: its normal would stop parts that slide across it. Contacts with
+/// different normals are in different manifolds, at most four. [sim]
 class SurfaceAlgorithm : public PairAlgorithm {
  public:
   SurfaceAlgorithm(const btCollisionAlgorithmConstructionInfo& info, const btCollisionObjectWrapper* a,

@@ -83,6 +83,13 @@ model::Inertial solid_inertial(const std::vector<model::PlacedShape>& shapes) {
   return model::combined(solids);
 }
 
+// The collision shape; `at`: its pose relative to the center of mass, which hulls include in their points.
+std::shared_ptr<btCollisionShape> collision_shape(const model::ShapeModel& shape, const Pose& at, bool is_hull) {
+  if (is_hull) return hull_shape(*shape.mesh, at);
+  if (shape.surface != nullptr) return std::make_shared<collision::SurfaceShape>(shape.surface);
+  return primitive_shape(shape);
+}
+
 // Sets the collision shape: a single shape if possible, else a compound.
 void set_collision_shape(Geometry& geometry) {
   const std::vector<model::PlacedShape>& shapes = geometry.placed;
@@ -90,19 +97,16 @@ void set_collision_shape(Geometry& geometry) {
   auto compound = std::make_shared<btCompoundShape>(shapes.size() > 4);
   for (const model::PlacedShape& placed : shapes) {
     const Pose at = to_center * placed.origin;
-    const bool surface = placed.shape.surface != nullptr;
-    const bool mesh = placed.shape.kind == model::ShapeKind::mesh && placed.shape.mesh != nullptr && !surface;
-    std::shared_ptr<btCollisionShape> shape = mesh ? hull_shape(*placed.shape.mesh, at)
-                                              : surface
-                                                  ? std::make_shared<collision::SurfaceShape>(placed.shape.surface)
-                                                  : primitive_shape(placed.shape);
+    const bool is_hull =
+        placed.shape.kind == model::ShapeKind::mesh && placed.shape.mesh != nullptr && placed.shape.surface == nullptr;
+    std::shared_ptr<btCollisionShape> shape = collision_shape(placed.shape, at, is_hull);
     if (shape == nullptr) continue;
     if (placed.shape.mesh != nullptr) geometry.meshes.push_back(placed.shape.mesh);
-    if (shapes.size() == 1 && (mesh || is_identity(at))) {
+    if (shapes.size() == 1 && (is_hull || is_identity(at))) {
       geometry.shape = shape;
       return;
     }
-    compound->addChildShape(mesh ? btTransform::getIdentity() : bullet::to_bt(at), shape.get());
+    compound->addChildShape(is_hull ? btTransform::getIdentity() : bullet::to_bt(at), shape.get());
     geometry.children.push_back(std::move(shape));
   }
   geometry.shape = compound;

@@ -9,6 +9,7 @@
 
 #include "base/memory/archive.h"
 #include "base/vec.h"
+#include "model/body_model.h"
 #include "properties/store.h"
 
 namespace limber::sim::bullet {
@@ -29,7 +30,7 @@ class Tendon {
     Part* part = nullptr;
     Vec3 position{0};  ///< In the part's link frame, m.
   };
-  static constexpr std::size_t kMaxPoints = 64;
+  static constexpr std::size_t kMaxPoints = model::TendonModel::kMaxPoints;
 
   /// `body`: its owner, whose members its node is among. The points must be valid (TendonList::add()).
   Tendon(Body& body, NodeId group, std::string name, std::vector<Point> points);

@@ -27,6 +27,7 @@ class TendonList {
   void remove(Tendon& tendon);
   /// Removes the tendons that use a body that is to be removed.
   void remove_from(const Body& body);
+  /// Moves these to the front of the list, in this order; the others follow in their previous order.
   void move_to_front(const std::vector<Tendon*>& first);
   void clear() { tendons_.clear(); }
   /// Adds the tendons of `source` to its copy. Points on `source` are placed on the copy's parts; a tendon with points

@@ -267,16 +267,7 @@ TickTimes World::step() {
   bullet_->step(timestep() / substeps(), substeps());
   const double readout_time = system::clock_seconds();
   sensing_.end_contacts();
-  state_.tick++;
-  // computed as a product, since a sum of timesteps would drift from it
-  if (timestep() != state_.last_timestep) {
-    state_.last_timestep = timestep();
-    state_.time_at_timestep_change = time();
-    state_.tick_at_timestep_change = state_.tick - 1;
-  }
-  store_.mutable_values(id_, *world_properties().time)[0] =
-      state_.time_at_timestep_change +
-      static_cast<double>(state_.tick - state_.tick_at_timestep_change) * state_.last_timestep;
+  store_.mutable_values(id_, *world_properties().time)[0] = state_.end_tick(timestep(), time());
   store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
   publish_solver_counts(*this, previous_counts);
   store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
@@ -289,6 +280,16 @@ TickTimes World::step() {
   visuals_->camera_moves().step();
   return {flush_time - start_time, physics_time - flush_time, readout_time - physics_time,
           system::clock_seconds() - readout_time};
+}
+
+double World::State::end_tick(double timestep, double time) {
+  if (timestep != last_timestep) {
+    last_timestep = timestep;
+    time_at_timestep_change = time;
+    tick_at_timestep_change = tick;
+  }
+  tick++;
+  return time_at_timestep_change + static_cast<double>(tick - tick_at_timestep_change) * last_timestep;
 }
 
 void World::after_substep(btDynamicsWorld* bullet, btScalar h) {

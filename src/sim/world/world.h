@@ -162,6 +162,9 @@ class World {
     double last_timestep = 0, time_at_timestep_change = 0;  // the present timestep, and the time at which it was set
     std::uint64_t tick_at_timestep_change = 0;
     WorldRequests requests;
+    /// Counts a tick that began at `time`, and returns the time at its end: a product, since a sum of timesteps would
+    /// drift from it.
+    double end_tick(double timestep, double time);
   } state_;
 };
 
