@@ -187,6 +187,7 @@ TEST(ReducedHull, IsDeterministic) {
 
 TEST(TriangleDistance, MeasuresToCornersEdgesAndInterior) {
   const Vec3 a{0, 0, 0}, b{2, 0, 0}, c{0, 2, 0};
+  EXPECT_EQ(nearest_on_triangle({0.5, 0.5, 3}, a, b, c), Vec3(0.5, 0.5, 0));
   EXPECT_DOUBLE_EQ(triangle_distance({0.5, 0.5, 3}, a, b, c), 3);
   EXPECT_DOUBLE_EQ(triangle_distance({-3, -4, 0}, a, b, c), 5);
   EXPECT_DOUBLE_EQ(triangle_distance({1, -2, 0}, a, b, c), 2);

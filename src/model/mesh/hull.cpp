@@ -140,23 +140,27 @@ bool is_beside_edge(double area, double from_begin, double from_end) {
 
 }  // namespace
 
-double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   // Ericson, Real-Time Collision Detection, 5.1.5: finds the corner, edge or interior region that is nearest
   const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
   const double d1 = glm::dot(ab, ap), d2 = glm::dot(ac, ap);
-  if (d1 <= 0 && d2 <= 0) return glm::length(ap);
+  if (d1 <= 0 && d2 <= 0) return a;
   const double d3 = glm::dot(ab, bp), d4 = glm::dot(ac, bp);
-  if (d3 >= 0 && d4 <= d3) return glm::length(bp);
+  if (d3 >= 0 && d4 <= d3) return b;
   const double vc = d1 * d4 - d3 * d2;
-  if (is_beside_edge(vc, d1, d3)) return glm::length(ap - d1 / (d1 - d3) * ab);
+  if (is_beside_edge(vc, d1, d3)) return a + d1 / (d1 - d3) * ab;
   const double d5 = glm::dot(ab, cp), d6 = glm::dot(ac, cp);
-  if (d6 >= 0 && d5 <= d6) return glm::length(cp);
+  if (d6 >= 0 && d5 <= d6) return c;
   const double vb = d5 * d2 - d1 * d6;
-  if (is_beside_edge(vb, d2, d6)) return glm::length(ap - d2 / (d2 - d6) * ac);
+  if (is_beside_edge(vb, d2, d6)) return a + d2 / (d2 - d6) * ac;
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) return glm::length(bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
+  if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
   const double sum = va + vb + vc;
-  return sum > 0 ? glm::length(ap - vb / sum * ab - vc / sum * ac) : glm::length(ap);
+  return sum > 0 ? a + vb / sum * ab + vc / sum * ac : a;
+}
+
+double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  return glm::length(p - nearest_on_triangle(p, a, b, c));
 }
 
 Hull convex_hull(std::span<const Vec3> points) {

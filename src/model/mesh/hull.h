@@ -32,6 +32,8 @@ Hull reduced_hull(std::span<const Vec3> points, const HullLimits& limits = {});
 /// Reduces a complete hull from convex_hull(). [any]
 Hull reduced_hull(const Hull& whole, const HullLimits& limits = {});
 
+/// The point of a triangle that is nearest to `p`. [any]
+Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 /// Distance of a point from a triangle. [any]
 double triangle_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 

@@ -56,8 +56,10 @@ Surface::Surface(std::shared_ptr<const MeshModel> mesh) : mesh_(std::move(mesh))
   sorted.reserve(triangles_.size());
   for (const unsigned index : order) sorted.push_back(triangles_[index]);
   triangles_ = std::move(sorted);
-  low_ = nodes_.front().box.low;
-  high_ = nodes_.front().box.high;
+  boxes_.reserve(triangles_.size());
+  for (const Indices& t : triangles_) boxes_.push_back(box_of(t));
+  low_ = Vec3(nodes_.front().box.low);
+  high_ = Vec3(nodes_.front().box.high);
 }
 
 Surface::Triangle Surface::triangle(unsigned index) const {
@@ -65,9 +67,19 @@ Surface::Triangle Surface::triangle(unsigned index) const {
   return {{vertex(t.vertex[0]), vertex(t.vertex[1]), vertex(t.vertex[2])}, t.beyond};
 }
 
+Surface::Box Surface::box_around(const Vec3& low, const Vec3& high) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Box box{glm::vec3(low), glm::vec3(high)};
+  for (int i = 0; i < 3; ++i) {
+    if (static_cast<double>(box.low[i]) > low[i]) box.low[i] = std::nextafter(box.low[i], -kInfinity);
+    if (static_cast<double>(box.high[i]) < high[i]) box.high[i] = std::nextafter(box.high[i], kInfinity);
+  }
+  return box;
+}
+
 Surface::Box Surface::box_of(const Indices& triangle) const {
   const Vec3 &a = vertex(triangle.vertex[0]), &b = vertex(triangle.vertex[1]), &c = vertex(triangle.vertex[2]);
-  return {glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c)};
+  return box_around(glm::min(glm::min(a, b), c), glm::max(glm::max(a, b), c));
 }
 
 // An edge of more than two triangles has no neighbors: everything touches it as a border.
@@ -102,17 +114,20 @@ void Surface::find_neighbors() {
 }
 
 void Surface::build(unsigned first, unsigned count, std::vector<Vec3>& centers, std::vector<unsigned>& order) {
-  Box box = box_of(triangles_[order[first]]);
-  Box middle{centers[order[first]], centers[order[first]]};
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Vec3 box_low(kInfinity), box_high(-kInfinity), low(kInfinity), high(-kInfinity);
   for (unsigned i = first; i < first + count; ++i) {
-    const Box each = box_of(triangles_[order[i]]);
-    box = {glm::min(box.low, each.low), glm::max(box.high, each.high)};
-    middle = {glm::min(middle.low, centers[order[i]]), glm::max(middle.high, centers[order[i]])};
+    for (const unsigned v : triangles_[order[i]].vertex) {
+      box_low = glm::min(box_low, vertex(v));
+      box_high = glm::max(box_high, vertex(v));
+    }
+    low = glm::min(low, centers[order[i]]);
+    high = glm::max(high, centers[order[i]]);
   }
   const std::size_t index = nodes_.size();
-  nodes_.push_back({box, first, count <= kLeafSize ? count : 0, 0});
+  nodes_.push_back({box_around(box_low, box_high), first, count <= kLeafSize ? count : 0, 0});
   if (count <= kLeafSize) return;
-  const Vec3 size = middle.high - middle.low;
+  const Vec3 size = high - low;
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   const unsigned half = count / 2;
   const auto begin = order.begin() + first;
@@ -148,14 +163,17 @@ std::optional<SurfaceHit> Surface::ray(const Vec3& from, const Vec3& direction, 
     nearest = {distance, normalized(glm::cross(u, v)) * (determinant > 0 ? 1.0 : -1.0)};
     found = true;
   };
-  walk([&](const Box& box) { return enter(box.low, box.high, from, inverse, nearest.distance) <= nearest.distance; },
-       visit);
+  walk(
+      [&](const Box& box) {
+        return enter(Vec3(box.low), Vec3(box.high), from, inverse, nearest.distance) <= nearest.distance;
+      },
+      visit);
   return found ? std::optional(nearest) : std::nullopt;
 }
 
 double Surface::distance(const Vec3& point) const {
   double nearest = std::numeric_limits<double>::infinity();
-  walk([&](const Box& box) { return box_distance(box.low, box.high, point) < nearest; },
+  walk([&](const Box& box) { return box_distance(Vec3(box.low), Vec3(box.high), point) < nearest; },
        [&](unsigned index) {
          const std::array<Vec3, 3> corner = triangle(index).corner;
          nearest = std::min(nearest, triangle_distance(point, corner[0], corner[1], corner[2]));

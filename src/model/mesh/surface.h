@@ -42,9 +42,10 @@ class Surface {
   /// Calls visit(index) for each triangle whose bounding box overlaps the box, in an order that is always the same.
   template <class Visit>
   void for_each_near(const Vec3& low, const Vec3& high, Visit&& visit) const {
-    walk([&](const Box& box) { return overlap(box, low, high); },
+    const Box near = box_around(low, high);
+    walk([&](const Box& box) { return overlap(box, near); },
          [&](unsigned index) {
-           if (overlap(box_of(triangles_[index]), low, high)) visit(index);
+           if (overlap(boxes_[index], near)) visit(index);
          });
   }
   /// The first point of a ray on the surface, at most `max` away. `direction` has unit length.
@@ -53,8 +54,8 @@ class Surface {
   double distance(const Vec3& point) const;
 
  private:
-  struct Box {
-    Vec3 low, high;
+  struct Box {  // of single precision, rounded outward: half the memory to read
+    glm::vec3 low, high;
   };
   struct Node {  // in depth-first order: the first child follows its parent
     Box box;
@@ -68,10 +69,11 @@ class Surface {
   };
   static constexpr std::size_t kMaxDepth = 64;
 
-  static bool overlap(const Box& box, const Vec3& low, const Vec3& high) {
-    return box.low.x <= high.x && box.high.x >= low.x && box.low.y <= high.y && box.high.y >= low.y &&
-           box.low.z <= high.z && box.high.z >= low.z;
+  static bool overlap(const Box& a, const Box& b) {
+    return a.low.x <= b.high.x && a.high.x >= b.low.x && a.low.y <= b.high.y && a.high.y >= b.low.y &&
+           a.low.z <= b.high.z && a.high.z >= b.low.z;
   }
+  static Box box_around(const Vec3& low, const Vec3& high);
   Box box_of(const Indices& triangle) const;
   void find_neighbors();
   void build(unsigned first, unsigned count, std::vector<Vec3>& centers, std::vector<unsigned>& order);
@@ -95,6 +97,7 @@ class Surface {
 
   std::shared_ptr<const MeshModel> mesh_;
   std::vector<Indices> triangles_;  // in the order of the leaves
+  std::vector<Box> boxes_;          // of the triangles
   std::vector<Node> nodes_;
   Vec3 low_{0};
   Vec3 high_{0};

@@ -17,6 +17,7 @@ namespace {
 
 using bullet::from_bt;
 using bullet::to_bt;
+using bullet::to_scalar;
 
 /// Contacts share a manifold if the cosine of the angle between their normals is larger than this (20 degrees).
 constexpr btScalar kSameManifold = 0.94F;
@@ -103,6 +104,7 @@ class SurfaceAlgorithm::Step {
         world_(convex.getWorldTransform()),
         ground_(ground.getWorldTransform()),
         pose_(ground_.inverseTimes(world_)),
+        is_sphere_(shape_.getShapeType() == SPHERE_SHAPE_PROXYTYPE),
         radius_(convex.getCollisionObject()->getCcdMotionThreshold()),
         breaking_(pair.manifolds_[0]->getContactBreakingThreshold()) {
     builders_[0].emplace(*pair.manifolds_[0], h);
@@ -114,15 +116,22 @@ class SurfaceAlgorithm::Step {
     btVector3 high;
     shape_.getAabb(pose_, low, high);
     const btVector3 margin(reach, reach, reach);
-    const bool is_sphere = shape_.getShapeType() == SPHERE_SHAPE_PROXYTYPE;
     const Vec3 center = from_bt((low + high) / 2);
-    const auto radius = static_cast<double>((is_sphere ? (high - low).x() / 2 : (high - low).length() / 2) + reach);
+    const auto radius = static_cast<double>((is_sphere_ ? (high - low).x() / 2 : (high - low).length() / 2) + reach);
     surface.for_each_near(from_bt(low - margin), from_bt(high + margin), [&](unsigned index) {
       // most triangles in the box are too far from a sphere; this is faster than their closest points
-      const model::Surface::Triangle triangle = surface.triangle(index);
-      if (model::triangle_distance(center, triangle.corner[0], triangle.corner[1], triangle.corner[2]) > radius) return;
+      const auto [a, b, c] = surface.triangle(index).corner;
+      const Vec3 point = model::nearest_on_triangle(center, a, b, c);
+      const double distance = glm::length(center - point);
+      if (distance > radius) return;
       const Facet facet(surface, index, pose_.getOrigin());
-      if (lowest(shape_, pose_, facet) <= reach) touch(facet, reach);
+      if (is_sphere_) {
+        touch(facet, closest_points_of_sphere(center, point, distance), reach);
+      } else if (lowest(shape_, pose_, facet) <= reach) {
+        btTriangleShape triangle(facet.corner[0], facet.corner[1], facet.corner[2]);
+        triangle.setMargin(0);
+        touch(facet, closest_points(shape_, pose_, triangle, btTransform::getIdentity()), reach);
+      }
     });
   }
 
@@ -137,10 +146,12 @@ class SurfaceAlgorithm::Step {
   }
 
  private:
-  void touch(const Facet& facet, btScalar reach) {
-    btTriangleShape triangle(facet.corner[0], facet.corner[1], facet.corner[2]);
-    triangle.setMargin(0);
-    const ClosestPoints nearest = closest_points(shape_, pose_, triangle, btTransform::getIdentity());
+  ClosestPoints closest_points_of_sphere(const Vec3& center, const Vec3& point, double distance) const {
+    if (distance == 0) return {};
+    return {true, to_scalar(distance) - shape_.getMargin(), to_bt((center - point) / distance), to_bt(point)};
+  }
+
+  void touch(const Facet& facet, const ClosestPoints& nearest, btScalar reach) {
     if (nearest.found && nearest.distance > reach) return;
     if (!nearest.found) {  // the center of a round shape is on the triangle
       touch_face(facet, nearest, false);
@@ -225,6 +236,7 @@ class SurfaceAlgorithm::Step {
   const btTransform& world_;
   const btTransform& ground_;
   btTransform pose_;  // of the shape in the surface's frame
+  bool is_sphere_;
   btScalar radius_;
   btScalar breaking_;
   std::array<std::optional<ManifoldBuilder>, kMaxManifolds> builders_;

@@ -1,4 +1,5 @@
 // A hundred quadrupeds on 512 × 512 heights against a plane, tick by tick in turns.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -32,7 +33,7 @@ model::ShapeModel hills() {
   return *model::heightfield_shape({kSide, kSide, 30, 30, heights}, "hills");
 }
 
-/// Quadrupeds that tread on the spot, 2 m apart.
+/// Quadrupeds that trot on the spot, 2 m apart.
 class Herd {
  public:
   Herd(const std::shared_ptr<const model::BodyModel>& dog, const model::ShapeModel& ground)
@@ -52,11 +53,25 @@ class Herd {
     const double start = system::clock_seconds();
     const double phase = 2 * kPi * 2 * engine_.world().time();
     for (const auto& body : engine_.world().bodies()) {
-      int i = 0;
-      for (const auto& motor : body->motors()) motor->set_target(0.15 * fixed::sin(phase + i++));
+      const auto& motors = body->motors();  // hip, thigh and knee of each leg
+      for (std::size_t leg = 0; leg < motors.size() / 3; leg++) {
+        const bool diagonal = leg == 0 || leg == 3;
+        const double lift = std::max(0.0, diagonal ? fixed::sin(phase) : -fixed::sin(phase));
+        motors[3 * leg + 1]->set_target(-0.15 * lift);
+        motors[3 * leg + 2]->set_target(0.3 * lift);
+      }
     }
     engine_.tick();
     return system::clock_seconds() - start;
+  }
+
+  /// The number of quadrupeds whose trunk is higher than half of its height at the start.
+  int standing() {
+    int count = 0;
+    for (const auto& body : engine_.world().bodies()) {
+      if (!body->motors().empty() && body->parts()[0]->pose().position.z > 0.2) count++;
+    }
+    return count;
   }
 
  private:
@@ -90,6 +105,8 @@ nlohmann::ordered_json measure_terrain(const MeasureOptions&) {
   const double of_plane = plane_times.quantile(0.5);
   const double of_hills = hill_times.quantile(0.5);
   return {{"quadrupeds", kDogs},
+          {"standing", on_plane.standing()},
+          {"standing_on_hills", on_hills.standing()},
           {"build_ms", rounded((built - start) * 1e3, 1)},
           {"plane_ms", rounded(of_plane * 1e3, 2)},
           {"terrain_ms", rounded(of_hills * 1e3, 2)},
