@@ -60,6 +60,16 @@ struct PlacedShape {
   double alpha = 1;
 };
 
+enum class Severity { note, warning, error };
+
+/// A problem in an imported file, with its line and a suggested fix.
+struct Problem {
+  int line = 0;  ///< 1-based; 0: not tied to a line.
+  Severity severity = Severity::warning;
+  std::string text;  ///< Describes the problem and names the element.
+  std::string fix;   ///< How to fix it.
+};
+
 /// A triangle mesh for drawing and its reduced convex hull for collisions, in meters, in the mesh's own frame, with the
 /// scale applied.
 struct MeshModel {
@@ -68,13 +78,18 @@ struct MeshModel {
   std::vector<unsigned> triangles;  ///< Three indices per triangle, counter-clockwise seen from outside.
   std::vector<Vec3> hull;           ///< Vertices of the reduced convex hull, for contacts (reduced_hull()).
   double hull_error = 0;            ///< Largest distance of an omitted vertex from the reduced hull, meters.
-  double hull_volume = 0;           ///< Volume of the complete convex hull, m³.
-  /// The primitive that the complete hull matches (box, sphere or capsule), in the mesh's frame; empty if none.
+  double hull_volume = 0;           ///< Volume of the complete convex hull, m³; with `pieces`: the sum of theirs.
+  /// The convex shapes that it collides as, in the mesh's frame: the objects of its file, or those that a concave mesh
+  /// is decomposed into (pieces.h). Empty: it collides as its hull, or as its primitive.
+  std::vector<PlacedShape> pieces;
+  /// The primitive that the complete hull matches (box, sphere or capsule), in the mesh's frame; empty if none, and
+  /// with `pieces`.
   std::optional<PlacedShape> primitive;
   std::uint64_t content_hash = 0;        ///< hash_bytes() of the file.
   std::shared_ptr<const MeshLook> look;  ///< Colors and textures of its triangles; null: none.
   bool closed = false;     ///< Watertight: `unit_inertial` uses the mesh's own volume, otherwise that of its hull.
   Inertial unit_inertial;  ///< Mass properties at density 1 kg/m³, so that `mass` is the volume in m³.
+  std::vector<Problem> collision_problems;  ///< Reported where it collides, without a line.
 };
 
 /// One rigid link. Links attached to it by fixed joints are merged into it, unless ImportOptions::keep_fixed is set.
@@ -187,16 +202,6 @@ struct Overlap {
   int a = 0;  ///< Indices into BodyModel::links, a < b.
   int b = 0;
   double depth = 0;  ///< Penetration depth of the first pair of shapes found to overlap, m; others may be deeper.
-};
-
-enum class Severity { note, warning, error };
-
-/// A problem in an imported file, with its line and a suggested fix.
-struct Problem {
-  int line = 0;  ///< 1-based; 0: not tied to a line.
-  Severity severity = Severity::warning;
-  std::string text;  ///< Describes the problem and names the element.
-  std::string fix;   ///< How to fix it.
 };
 
 /// A link as written in the file, before merging; printed by `limber inspect`.

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "model/pieces/pieces.h"
+
 namespace limber::model {
 
 namespace {
@@ -281,10 +283,12 @@ struct OverlapSolids {
 OverlapSolids solids_of(const OverlapPart& part) {
   OverlapSolids out;
   for (const PlacedShape& placed : part.shapes) {
-    ConvexSolid solid(placed, part.pose);
-    if (!solid.has_volume()) continue;
-    out.box.add(solid.box());
-    out.solids.push_back(std::move(solid));
+    for (const PlacedShape& convex : convex_shapes(placed)) {
+      ConvexSolid solid(convex, part.pose);
+      if (!solid.has_volume()) continue;
+      out.box.add(solid.box());
+      out.solids.push_back(std::move(solid));
+    }
   }
   return out;
 }

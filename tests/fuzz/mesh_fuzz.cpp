@@ -8,6 +8,22 @@
 #include "fuzz/target.h"
 #include "model/look/mesh_look.h"
 #include "model/mesh/load.h"
+#include "model/pieces/decompose.h"
+#include "model/pieces/pieces.h"
+
+namespace {
+
+void check_pieces(const limber::model::MeshModel& mesh) {
+  limber::must(mesh.pieces.size() <= limber::model::kMaxPieces && std::isfinite(mesh.hull_volume));
+  for (const limber::model::PlacedShape& piece : mesh.pieces) {
+    limber::must(limber::is_finite(piece.origin.position));
+    if (piece.shape.kind != limber::model::ShapeKind::mesh) continue;
+    limber::must(piece.shape.mesh->hull.size() >= 4 && piece.shape.mesh->hull.size() <= 64);
+    for (const limber::Vec3& v : piece.shape.mesh->hull) limber::must(limber::is_finite(v));
+  }
+}
+
+}  // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -30,6 +46,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const limber::Vec3& v : m.vertices) limber::must(limber::is_finite(v));
   for (const unsigned t : m.triangles) limber::must(t < m.vertices.size());
   limber::must(m.triangles.size() % 3 == 0 && m.hull.size() >= 4 && m.hull.size() <= 64);
+  check_pieces(m);
+  if (m.triangles.size() <= 3000) check_pieces(*limber::model::decomposed(*mesh));
   limber::must(std::isfinite(m.hull_error) && m.unit_inertial.mass > 0 && std::isfinite(m.unit_inertial.mass));
   if (m.look == nullptr) return 0;
   const std::size_t corners = m.triangles.size();

@@ -98,6 +98,8 @@ TEST(MeshGltf, NodesPlaceAndInstanceMeshes) {
   EXPECT_NEAR(mesh->unit_inertial.mass, (8 + 1) / 6.0, 1e-9);
   EXPECT_LT(glm::length(mesh->vertices[0] - Vec3(0, 3, 0)), 1e-12);
   EXPECT_LT(glm::length(mesh->vertices[4] - Vec3(10, 3, 0)), 1e-12);
+  ASSERT_EQ(mesh->pieces.size(), 2u) << "each node is a piece";
+  EXPECT_NEAR(mesh->pieces[1].shape.mesh->unit_inertial.mass, 1 / 6.0, 1e-9);
 }
 
 // The factors of glTF are linear light.

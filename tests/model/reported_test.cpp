@@ -143,10 +143,40 @@ TEST(Reported, ConcaveMeshesAreSurfacesOfFixedLinksOnly) {
   EXPECT_EQ(links[0].collisions[0].shape.kind, ShapeKind::mesh) << "not the box that it is";
   EXPECT_EQ(links[0].collisions[1].shape.surface, nullptr);
   EXPECT_EQ(links[1].collisions[0].shape.surface, nullptr);
-  EXPECT_TRUE(has_problem(**model, Severity::warning,
-                          "link 'b' can move; its mesh with concave=\"yes\" collides as its convex hull", 4))
-      << all_problems(**model);
-  EXPECT_EQ(all_problems(**model).find("link 'a' can move"), std::string::npos);
+  EXPECT_TRUE(links[1].collisions[0].shape.mesh->pieces.empty()) << "convex";
+  EXPECT_EQ(all_problems(**model).find("concave"), std::string::npos) << all_problems(**model);
+}
+
+TEST(Reported, DecomposesConcaveMeshes) {
+  const test::Files folder;
+  test::Solid angle = test::box({3, 1, 1});
+  angle.add(test::box({1, 1, 2}).moved({{-1, 0, 1.5}, quat_identity()}));
+  folder.write("angle.stl", test::binary_stl(angle));
+  test::Solid open = angle;
+  open.triangles.resize(open.triangles.size() - 3);
+  folder.write("open.stl", test::binary_stl(open));
+  const auto import = [&](const std::string& link, const std::string& collision, const std::string& geometry) {
+    folder.write("r.urdf", "<robot name=\"r\"><link name=\"a\" " + link +
+                               "><inertial><mass value=\"1\"/></inertial>\n<collision " + collision +
+                               "><geometry><mesh " + geometry + "/></geometry></collision></link></robot>");
+    const auto model = import_urdf(folder.path("r.urdf"));
+    EXPECT_TRUE(model);
+    return model ? **model : BodyModel();
+  };
+  const std::string file = "filename=\"angle.stl\"";
+  for (const BodyModel& m : {import("concave=\"yes\"", "", file), import("", "concave=\"true\"", file),
+                             import("", "", file + " concave=\"1\"")}) {
+    ASSERT_EQ(m.links.size(), 1u);
+    EXPECT_EQ(m.links[0].collisions[0].shape.mesh->pieces.size(), 2u);
+    EXPECT_EQ(all_problems(m).find("concave"), std::string::npos) << all_problems(m);
+    EXPECT_EQ(all_problems(m).find("hollow"), std::string::npos) << all_problems(m);
+  }
+  const BodyModel convex = import("", "concave=\"no\"", file);
+  EXPECT_TRUE(convex.links[0].collisions[0].shape.mesh->pieces.empty());
+  const BodyModel holed = import("", "concave=\"yes\"", "filename=\"open.stl\"");
+  EXPECT_TRUE(has_problem(holed, Severity::warning,
+                          "mesh 'open.stl' is open, so that its hollows are unknown; it collides as its hull", 2))
+      << all_problems(holed);
 }
 
 TEST(Reported, SelfCollideExcludesALink) {

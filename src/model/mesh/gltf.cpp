@@ -56,7 +56,8 @@ Placement placement_of(const Json& node) {
 
 class Reader {
  public:
-  Reader(Document& document, SoupLook* look) : document_(document), json_(document.json()), look_(look) {}
+  Reader(Document& document, SoupLook* look, SoupObjects* objects)
+      : document_(document), json_(document.json()), look_(look), objects_(objects) {}
 
   Result<MeshSoup> read() {
     // y up to z up
@@ -162,6 +163,7 @@ class Reader {
       }
     }
     if (look_ != nullptr) look_->paint(soup_.size(), material(member(&primitive, "material")));
+    if (objects_ != nullptr) objects_->resize(soup_.size() / 3, object_++);
     return {};
   }
 
@@ -241,6 +243,8 @@ class Reader {
   Document& document_;
   const Json& json_;
   SoupLook* look_;
+  SoupObjects* objects_;
+  std::uint32_t object_ = 0;
   MeshSoup soup_;
   std::size_t work_ = 0;
   std::map<const Json*, std::uint32_t> materials_;
@@ -253,10 +257,10 @@ class Reader {
 
 namespace limber::model {
 
-Result<MeshSoup> soup_from_gltf(std::string_view bytes, SoupLook* look) {
+Result<MeshSoup> soup_from_gltf(std::string_view bytes, SoupLook* look, SoupObjects* objects) {
   const Result<std::unique_ptr<gltf::Document>> document = gltf::Document::parse(bytes, look ? look->files() : nullptr);
   if (!document) return Error{document.error()};
-  return gltf::Reader(**document, look).read();
+  return gltf::Reader(**document, look, objects).read();
 }
 
 }  // namespace limber::model

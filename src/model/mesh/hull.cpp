@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <queue>
 #include <utility>
 
+#include "base/hash.h"
 #include "model/mesh/hull_surface.h"
 
 namespace limber::model {
@@ -133,12 +135,42 @@ class Quickhull {
   std::vector<int> pending_;
 };
 
+// True if no point is outside of the planes of the faces; of large hulls, compares some faces only.
+bool contains_all(const Hull& hull, std::span<const Vec3> points, double tolerance) {
+  constexpr std::size_t kMaxComparisons = 20'000'000;
+  const std::vector<FacePlane> planes = planes_of(hull);
+  const std::size_t step = 1 + planes.size() * points.size() / kMaxComparisons;
+  for (std::size_t i = 0; i < planes.size(); i += step) {
+    const double max = planes[i].offset + tolerance;
+    const auto is_outside = [&](const Vec3& p) { return glm::dot(planes[i].normal, p) > max; };
+    if (std::any_of(points.begin(), points.end(), is_outside)) return false;
+  }
+  return true;
+}
+
 // True if the nearest point of a triangle is on an edge: the point is outside of it (`area`) and between its ends.
 bool is_beside_edge(double area, double from_begin, double from_end) {
   return area <= 0 && from_begin >= 0 && from_end <= 0;
 }
 
 }  // namespace
+
+std::vector<FacePlane> planes_of(const Hull& hull) {
+  constexpr double kMinAspect = 1e-3;
+  std::vector<FacePlane> out;
+  out.reserve(hull.triangles.size() / 3);
+  for (std::size_t i = 0; i + 2 < hull.triangles.size(); i += 3) {
+    const Vec3& a = hull.vertices[hull.triangles[i]];
+    const Vec3& b = hull.vertices[hull.triangles[i + 1]];
+    const Vec3& c = hull.vertices[hull.triangles[i + 2]];
+    const Vec3 across = glm::cross(b - a, c - a);
+    const double longest = std::max({glm::dot(b - a, b - a), glm::dot(c - a, c - a), glm::dot(c - b, c - b)});
+    if (!(glm::length(across) > kMinAspect * longest)) continue;
+    const Vec3 normal = normalized(across);
+    out.push_back({normal, glm::dot(normal, (a + b + c) / 3.0)});
+  }
+  return out;
+}
 
 Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   // Ericson, Real-Time Collision Detection, 5.1.5: finds the corner, edge or interior region that is nearest
@@ -176,6 +208,23 @@ Hull convex_hull(std::span<const Vec3> points) {
   if (!solid.build_tetrahedron(min_thickness_for(extent_of(thick)))) return {};
   Quickhull(solid).run(static_cast<int>(thick.size()));
   return solid.result();
+}
+
+Hull checked_convex_hull(std::span<const Vec3> points) {
+  Hull hull = convex_hull(points);
+  if (points.empty()) return hull;
+  const double size = extent_of(points).size;
+  const double tolerance = 1e-5 * size + tolerance_for(extent_of(points));
+  std::uint64_t random = 0;
+  for (double offset = 1e-6; offset <= 1e-3 && !contains_all(hull, points, tolerance + offset * size); offset *= 10) {
+    std::vector<Vec3> displaced(points.begin(), points.end());
+    for (Vec3& p : displaced) {
+      for (int i = 0; i < 3; ++i)
+        p[i] += offset * size * (static_cast<double>(splitmix64(random) >> 11u) * 0x1p-52 - 1);
+    }
+    hull = convex_hull(displaced);
+  }
+  return hull;
 }
 
 Hull reduced_hull(const Hull& whole, const HullLimits& limits) {

@@ -14,6 +14,14 @@ struct Hull {
   double error = 0;                 ///< Largest distance of an omitted point from the surface, meters.
 };
 
+/// The plane of a face: points p of it have normal · p = offset.
+struct FacePlane {
+  Vec3 normal;  ///< Outward, unit length.
+  double offset;
+};
+/// Returns the planes of a hull's faces, except those of slivers, whose normals consist of rounding errors. [any]
+std::vector<FacePlane> planes_of(const Hull& hull);
+
 /// Stop criteria of reduced_hull().
 struct HullLimits {
   int min_vertices = 16;    ///< Fewer only if the cloud's hull has fewer.
@@ -25,6 +33,10 @@ struct HullLimits {
 /// made vertices. Flat, straight and single-point clouds are thickened (by 0.1 % of the size to each side, at least
 /// 0.1 mm and the resolution of single precision), so that the result always has a volume. Empty for no points. [any]
 Hull convex_hull(std::span<const Vec3> points);
+
+/// Like convex_hull(), but exact also for clipped meshes, where many points lie in one plane: if rounding errors of
+/// such points leave others outside, displaces all by up to a thousandth of the size. [any]
+Hull checked_convex_hull(std::span<const Vec3> points);
 
 /// Returns a hull with fewer vertices: starts from a tetrahedron and adds the farthest vertex until the limits are met.
 /// Deterministic. [any]

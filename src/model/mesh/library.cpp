@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "model/look/mesh_look.h"
 #include "model/mesh/load.h"
+#include "model/pieces/decompose.h"
 #include "model/xml_text.h"
 
 namespace limber::model {
@@ -189,6 +190,28 @@ bool MeshLibrary::Entry::is_current(const std::string& path) {
   return true;
 }
 
+// The cached mesh; null: it isn't in the cache, or was loaded again since.
+MeshLibrary::Entry* MeshLibrary::entry_of(const MeshModel& mesh) {
+  const auto found =
+      std::find_if(meshes_.begin(), meshes_.end(), [&](const auto& known) { return known.second.mesh.get() == &mesh; });
+  return found != meshes_.end() ? &found->second : nullptr;
+}
+
+std::shared_ptr<const MeshModel> MeshLibrary::decomposed(const std::shared_ptr<const MeshModel>& mesh) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const Entry* const entry = entry_of(*mesh); entry != nullptr && entry->decomposed != nullptr)
+      return entry->decomposed;
+  }
+  // without the lock, as for loading: if two threads decompose the same mesh, the first result is used
+  std::shared_ptr<const MeshModel> pieces = model::decomposed(mesh);
+  const std::lock_guard lock(mutex_);
+  Entry* const entry = entry_of(*mesh);
+  if (entry == nullptr) return pieces;
+  if (entry->decomposed == nullptr) entry->decomposed = std::move(pieces);
+  return entry->decomposed;
+}
+
 Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& path, const Vec3& scale) {
   const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
   {
@@ -202,7 +225,7 @@ Result<std::shared_ptr<const MeshModel>> MeshLibrary::load(const std::string& pa
   FileLookup files(path, images_, nullptr);
   auto mesh = memory_files_ == nullptr ? load_mesh(path, scale, &files) : load_from_memory(path, scale);
   if (!mesh) return mesh;
-  Entry loaded{stamp, *mesh, {}};
+  Entry loaded{stamp, *mesh, nullptr, {}};
   if (memory_files_ == nullptr && (*mesh)->look != nullptr) {
     for (const auto& file : (*mesh)->look->files) loaded.look_stamps.emplace_back(file.first);
   }

@@ -27,7 +27,8 @@ Result<std::string> find_mesh(const std::string& uri, const std::string& folder,
 /// True if the name of a file that was found differs from its URI in the case of letters. [any]
 bool differs_in_case(const std::string& uri, const std::string& path);
 
-/// Cache of loaded meshes by file and scale. A file that has changed on disk is loaded again. [any]
+/// Cache of loaded meshes by file and scale, and of their decompositions. A file that has changed on disk is loaded
+/// again. [any]
 class MeshLibrary {
  public:
   /// `memory_files`: files to read instead of the disk; null: use the disk.
@@ -41,6 +42,8 @@ class MeshLibrary {
   Result<std::string> read(const std::string& path, std::size_t max_bytes) const;
   /// Returns the mesh of a file, scaled, from the cache if the file is unchanged.
   Result<std::shared_ptr<const MeshModel>> load(const std::string& path, const Vec3& scale);
+  /// Returns the mesh with the pieces of its decomposition (decompose.h), from the cache if load() has returned it.
+  std::shared_ptr<const MeshModel> decomposed(const std::shared_ptr<const MeshModel>& mesh);
   /// Returns the image of a PNG or JPEG file. The error starts with the path.
   Result<std::shared_ptr<const Image>> image(const std::string& path) {
     return images_.load(path, memory_files_.get());
@@ -50,11 +53,13 @@ class MeshLibrary {
   struct Entry {
     FileStamp stamp;
     std::shared_ptr<const MeshModel> mesh;
-    std::vector<FileStamp> look_stamps;  // of MeshLook::files
+    std::shared_ptr<const MeshModel> decomposed;  // null: not yet
+    std::vector<FileStamp> look_stamps;           // of MeshLook::files
 
     bool is_current(const std::string& path);
   };
 
+  Entry* entry_of(const MeshModel& mesh);
   Result<std::shared_ptr<const MeshModel>> load_from_memory(const std::string& path, const Vec3& scale);
 
   std::shared_ptr<const FileSet> memory_files_;

@@ -19,6 +19,7 @@
 #include "model/mesh/hull.h"
 #include "model/mesh/mass_properties.h"
 #include "model/mesh/triangles.h"
+#include "model/pieces/pieces.h"
 #include "model/xml_text.h"
 
 namespace limber::model {
@@ -28,12 +29,12 @@ namespace {
 constexpr std::array<std::string_view, 7> kExtensions{"stl", "obj", "dae", "msh", "ply", "gltf", "glb"};
 constexpr double kMaxCoordinate = 1e6;
 
-Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format, SoupLook& look) {
+Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format, SoupLook& look, SoupObjects& objects) {
   switch (format) {
     case MeshFormat::stl:
       return soup_from_stl(bytes, &look);
     case MeshFormat::obj:
-      return soup_from_obj(bytes, &look);
+      return soup_from_obj(bytes, &look, &objects);
     case MeshFormat::dae:
       return soup_from_collada(bytes, &look);
     case MeshFormat::msh:
@@ -42,7 +43,7 @@ Result<MeshSoup> read_soup(std::string_view bytes, MeshFormat format, SoupLook& 
       return soup_from_ply(bytes, &look);
     case MeshFormat::gltf:
     case MeshFormat::glb:
-      return soup_from_gltf(bytes, &look);
+      return soup_from_gltf(bytes, &look, &objects);
   }
   return Error{"is not a supported mesh format. Use an STL, OBJ, DAE, PLY or glTF file."};
 }
@@ -63,7 +64,7 @@ void move_triangle(std::vector<T>& corners, std::size_t from, std::size_t to) {
 }
 
 /// Merges equal vertices and drops triangles that then use a vertex twice.
-void weld(const MeshSoup& soup, MeshModel& out, MeshLook* look) {
+void weld(const MeshSoup& soup, MeshModel& out, MeshLook* look, SoupObjects& objects) {
   std::unordered_map<Vec3, unsigned, VertexHash> number;
   number.reserve(soup.size() / 4);
   out.triangles.reserve(soup.size());
@@ -75,14 +76,16 @@ void weld(const MeshSoup& soup, MeshModel& out, MeshLook* look) {
       corner[k] = found->second;
     }
     if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    const std::size_t to = out.triangles.size() / 3;
+    if (!objects.empty()) objects[to] = objects[i / 3];
     if (look != nullptr) {
-      const std::size_t to = out.triangles.size() / 3;
       if (!look->triangle_materials.empty()) look->triangle_materials[to] = look->triangle_materials[i / 3];
       move_triangle(look->texcoords, i / 3, to);
       move_triangle(look->colors, i / 3, to);
     }
     out.triangles.insert(out.triangles.end(), corner.begin(), corner.end());
   }
+  if (!objects.empty()) objects.resize(out.triangles.size() / 3);
   if (look == nullptr) return;
   if (!look->triangle_materials.empty()) look->triangle_materials.resize(out.triangles.size() / 3);
   if (!look->texcoords.empty()) look->texcoords.resize(out.triangles.size());
@@ -101,9 +104,9 @@ void flip_winding(MeshModel& mesh, MeshLook* look) {
   flip_corners(look->colors);
 }
 
-/// Computes hulls, the matching primitive, closedness and mass properties. A closed mesh uses its own volume if that is
-/// plausible; other meshes use that of their hull.
-void compute_properties(MeshModel& mesh, MeshLook* look) {
+/// Computes hulls, the matching primitive, pieces, closedness and mass properties. A closed mesh uses its own volume if
+/// that is plausible; other meshes use that of their hull, or those of their objects.
+void compute_properties(MeshModel& mesh, MeshLook* look, const SoupObjects& objects) {
   const Hull complete = convex_hull(mesh.vertices);
   const Hull contact = reduced_hull(complete);
   mesh.hull = contact.vertices;
@@ -111,7 +114,8 @@ void compute_properties(MeshModel& mesh, MeshLook* look) {
   mesh.primitive = recognize_primitive(complete);
   const Inertial hull = unit_inertial_of(complete.vertices, complete.triangles);
   mesh.hull_volume = hull.mass;
-  mesh.closed = is_closed(mesh.triangles);
+  const ObjectSolids solids = split_objects(mesh, objects);
+  mesh.closed = is_closed(mesh.triangles) || solids.watertight;
   Inertial own = mesh.closed ? unit_inertial_of(mesh.vertices, mesh.triangles) : Inertial{};
   if (own.mass < 0) {
     flip_winding(mesh, look);
@@ -120,7 +124,7 @@ void compute_properties(MeshModel& mesh, MeshLook* look) {
   }
   const bool plausible =
       own.mass > 1e-6 * hull.mass && own.mass <= hull.mass * 1.0001 && tensor_error(own.tensor).empty();
-  mesh.unit_inertial = plausible ? own : hull;
+  mesh.unit_inertial = plausible ? own : mesh.pieces.empty() ? hull : solids.inertial;
 }
 
 }  // namespace
@@ -140,7 +144,8 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
   if (bytes.empty()) return Error{"is empty. Export it again."};
   try {
     SoupLook soup_look(files);
-    Result<MeshSoup> soup = read_soup(bytes, format, soup_look);
+    SoupObjects objects;
+    Result<MeshSoup> soup = read_soup(bytes, format, soup_look, objects);
     if (!soup) return Error{soup.error()};
     for (Vec3& v : *soup) {
       v *= scale;
@@ -153,10 +158,10 @@ Result<std::shared_ptr<const MeshModel>> mesh_from_bytes(std::string_view bytes,
     mesh->content_hash = hash_bytes(bytes);
     const std::shared_ptr<MeshLook> look = soup_look.release(soup->size());
     mesh->look = look;
-    weld(*soup, *mesh, look.get());
+    weld(*soup, *mesh, look.get(), objects);
     if (mesh->triangles.empty()) return Error{"contains no triangles. Export it again, as a surface."};
     if (scale.x * scale.y * scale.z < 0) flip_winding(*mesh, look.get());
-    compute_properties(*mesh, look.get());
+    compute_properties(*mesh, look.get(), objects);
     if (mesh->hull.size() < 4) return Error{"is too small to have a hull. Check its scale: URDF uses meters."};
     return std::shared_ptr<const MeshModel>(std::move(mesh));
   } catch (const std::exception& e) {

@@ -1,4 +1,4 @@
-// Wavefront OBJ reader: vertices, faces, texture coordinates and materials; groups, normals and curves are ignored.
+// Wavefront OBJ reader: vertices, faces, texture coordinates, materials and objects; normals and curves are ignored.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -22,8 +23,8 @@ namespace {
 
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
-enum class ObjLine : std::uint8_t { vertex, texcoord, face, use_material, material_file };
-constexpr std::array<std::string_view, 5> kObjWords{"v", "vt", "f", "usemtl", "mtllib"};
+enum class ObjLine : std::uint8_t { vertex, texcoord, face, use_material, material_file, object, group };
+constexpr std::array<std::string_view, 7> kObjWords{"v", "vt", "f", "usemtl", "mtllib", "o", "g"};
 
 /// Iterates over the lines of an OBJ file that start with one of kObjWords; lines continued with a backslash are read
 /// as one.
@@ -46,7 +47,7 @@ class ObjLines {
       advance_line();
       if (!wanted) continue;
       kind_ = static_cast<ObjLine>(known - kObjWords.begin());
-      const bool has_names = kind_ == ObjLine::use_material || kind_ == ObjLine::material_file;
+      const bool has_names = kind_ >= ObjLine::use_material;
       rest_ = whole.substr(word.size(), has_names ? std::string_view::npos : whole.find('#') - word.size());
       return true;
     }
@@ -130,7 +131,8 @@ TexCoord read_texcoord(ObjLines& lines) {
 /// Reads an OBJ file in two passes, because a face may refer to vertices further down.
 class ObjReader {
  public:
-  ObjReader(std::string_view bytes, SoupLook* look) : lines_(bytes), look_(look) {}
+  ObjReader(std::string_view bytes, SoupLook* look, SoupObjects* objects)
+      : lines_(bytes), look_(look), objects_(objects) {}
 
   Result<MeshSoup> read() {
     if (Result<void> points = read_points(); !points) return Error{points.error()};
@@ -141,6 +143,8 @@ class ObjReader {
 
  private:
   static constexpr std::size_t kNoTexcoord = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kMaxObjects = 10'000;  // further ones belong to the last
+  static constexpr std::size_t kMaxObjectName = 200;  // compared bytes
 
   Result<void> read_points() {
     while (lines_.next()) {
@@ -180,6 +184,8 @@ class ObjReader {
         ++texcoords_before_;
       } else if (lines_.kind() == ObjLine::use_material) {
         use_material(lines_.rest());
+      } else if (lines_.kind() == ObjLine::object || lines_.kind() == ObjLine::group) {
+        use_object(lines_.kind(), lines_.rest());
       } else if (lines_.kind() == ObjLine::face) {
         const std::string fault = read_face();
         if (!fault.empty()) return mesh_error(lines_.line(), fault);
@@ -198,6 +204,15 @@ class ObjReader {
     look_->report(Severity::warning, "material",
                   fmt::format("material '{}' not found in its material file; drawn white", printable(name)),
                   "Export the mesh again.");
+  }
+
+  /// Faces of the same object and group belong together, also if others are between them.
+  void use_object(ObjLine kind, std::string_view name) {
+    if (objects_ == nullptr || object_numbers_.size() >= kMaxObjects) return;
+    if (kind == ObjLine::object) object_name_ = name.substr(0, kMaxObjectName), group_name_.clear();
+    if (kind == ObjLine::group) group_name_ = name.substr(0, kMaxObjectName);
+    const auto next = static_cast<std::uint32_t>(object_numbers_.size());
+    object_ = object_numbers_.try_emplace({object_name_, group_name_}, next).first->second;
   }
 
   /// Reads corners written as v, v/vt, v//vn or v/vt/vn. Returns the error text, or empty on success.
@@ -243,10 +258,15 @@ class ObjReader {
       if (corner_vertices_[i] < colors_.size()) look_->set_color(corner, colors_[corner_vertices_[i]]);
     }
     if (look_ != nullptr) look_->paint(soup_.size(), material_);
+    if (objects_ != nullptr) objects_->resize(soup_.size() / 3, object_);
   }
 
   ObjLines lines_;
   SoupLook* look_;
+  SoupObjects* objects_;
+  std::map<std::pair<std::string, std::string>, std::uint32_t> object_numbers_{{{}, 0}};  // by object and group
+  std::string object_name_, group_name_;
+  std::uint32_t object_ = 0;
   MeshSoup soup_;
   std::vector<Vec3> vertices_;
   std::vector<CornerColor> colors_;  // of the first vertices; the others are white
@@ -264,6 +284,8 @@ class ObjReader {
 
 }  // namespace
 
-Result<MeshSoup> soup_from_obj(std::string_view bytes, SoupLook* look) { return ObjReader(bytes, look).read(); }
+Result<MeshSoup> soup_from_obj(std::string_view bytes, SoupLook* look, SoupObjects* objects) {
+  return ObjReader(bytes, look, objects).read();
+}
 
 }  // namespace limber::model

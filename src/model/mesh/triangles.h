@@ -19,13 +19,17 @@ using MeshSoup = std::vector<Vec3>;
 
 class SoupLook;
 
+/// The object of a file that each triangle belongs to, by number, in the order of first use. Empty if the format has no
+/// objects, or if nothing reads them.
+using SoupObjects = std::vector<std::uint32_t>;
+
 /// Each reads the bytes of one file, in linear time and memory. The result has finite coordinates and at most
 /// kMaxMeshTriangles triangles. Errors give the line (of text formats) and the fix. `look`: receives the colors; null:
-/// they are not read. [any]
+/// they are not read. `objects`: receives the objects: groups (o and g) of OBJ, primitives of each node of glTF. [any]
 Result<MeshSoup> soup_from_stl(std::string_view bytes, SoupLook* look = nullptr);
-Result<MeshSoup> soup_from_obj(std::string_view bytes, SoupLook* look = nullptr);
+Result<MeshSoup> soup_from_obj(std::string_view bytes, SoupLook* look = nullptr, SoupObjects* objects = nullptr);
 /// Reads the scene of a glTF 2.0 file (text or GLB), rotated from y up to z up.
-Result<MeshSoup> soup_from_gltf(std::string_view bytes, SoupLook* look = nullptr);
+Result<MeshSoup> soup_from_gltf(std::string_view bytes, SoupLook* look = nullptr, SoupObjects* objects = nullptr);
 Result<MeshSoup> soup_from_ply(std::string_view bytes, SoupLook* look = nullptr);
 Result<MeshSoup> soup_from_msh(std::string_view bytes);
 /// Reads the active scene, converted to meters by the file's unit; axes are not converted. Skins and morphs use their

@@ -59,7 +59,7 @@ ImportResult import_file(std::string_view bytes, const std::string& path, const 
   auto model = std::make_shared<BodyModel>();
   model->name = links->name;
   model->file = path;
-  UrdfBuildContext build{*links, *tree, options, problems, *model, {}, {}, {}};
+  UrdfBuildContext build{*links, *tree, options, problems, loader, *model, {}, {}, {}};
   if (const Result<void> built = build_body(build); !built)
     return Error{fmt::format("{}: {}", shown_path, built.error())};
   model->problems = problems.release();

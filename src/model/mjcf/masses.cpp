@@ -1,6 +1,8 @@
 // Masses of the bodies, with the rules of MuJoCo's compiler.
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
@@ -8,6 +10,7 @@
 #include "base/text.h"
 #include "model/mesh/mass_properties.h"
 #include "model/mjcf/convert.h"
+#include "model/pieces/pieces.h"
 
 namespace limber::model {
 
@@ -46,9 +49,17 @@ void bound(Inertial& inertial, const MjcfCompiler& compiler) {
 }  // namespace
 
 void load_meshes(MjcfFile& file, MeshLoader& loader) {
+  std::map<std::shared_ptr<const MeshModel>, std::shared_ptr<const MeshModel>> joined;
   for (MjcfBody& body : file.bodies) {
     const std::string owner = fmt::format("body '{}':", printable(body.name));
     std::erase_if(body.geoms, [&](MjcfGeom& geom) { return !loader.load(geom.shape, owner); });
+    // a mesh is one hull in MuJoCo, also if its file has several objects
+    for (MjcfGeom& geom : body.geoms) {
+      if (!has_pieces(geom.shape.shape)) continue;
+      std::shared_ptr<const MeshModel>& whole = joined[geom.shape.shape.mesh];
+      if (whole == nullptr) whole = without_pieces(*geom.shape.shape.mesh);
+      geom.shape.shape.mesh = whole;
+    }
   }
 }
 

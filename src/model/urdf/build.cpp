@@ -44,30 +44,16 @@ void add_shapes(UrdfBuildContext& build, std::size_t node) {
   const UrdfLink& from = build.link(node);
   for (const UrdfShape& s : from.collisions) {
     UrdfShape shape = s;
-    if (collides_as_surface(build, node, s)) shape.shape.surface = std::make_shared<Surface>(s.shape.mesh);
+    if (collides_as_surface(build, node, s)) {
+      shape.shape.surface = std::make_shared<Surface>(s.shape.mesh);
+    } else if (s.shape.kind == ShapeKind::mesh) {
+      const std::string owner = fmt::format("link '{}'", printable(from.name));
+      if (s.concave) build.meshes.decompose(shape, owner);
+      build.meshes.report_collision(shape, owner);
+    }
     to.collisions.push_back(placed(shape, build.offset[node], true));
   }
   for (const UrdfShape& s : from.visuals) to.visuals.push_back(placed(s, build.offset[node], false));
-}
-
-// Concave meshes of links that can move collide as their hulls.
-void report_concave_hulls(UrdfBuildContext& build) {
-  std::size_t count = 0;
-  const UrdfShape* first = nullptr;
-  std::string owner;
-  for (std::size_t node = 0; node < build.tree.size(); ++node) {
-    for (const UrdfShape& shape : build.link(node).collisions) {
-      if (!shape.concave || shape.shape.kind != ShapeKind::mesh || collides_as_surface(build, node, shape)) continue;
-      if (count++ > 0) continue;
-      first = &shape;
-      owner = printable(build.link(node).name);
-    }
-  }
-  if (count == 0) return;
-  build.problems.warning(first->line,
-                         fmt::format("link '{}' can move; its mesh with concave=\"yes\" collides as its convex hull{}",
-                                     owner, count > 1 ? fmt::format(" … and {} more of this kind", count - 1) : ""),
-                         "Split the mesh into convex pieces, one <collision> for each.");
 }
 
 JointModel make_joint(UrdfBuildContext& build, std::size_t node) {
@@ -263,7 +249,6 @@ void build_structure(UrdfBuildContext& build) {
     }
     add_shapes(build, node);
   }
-  report_concave_hulls(build);
   choose_motors(build);
   add_frames_and_exclusions(build);
 }

@@ -10,6 +10,7 @@
 #include "model/problems.h"
 #include "model/urdf/file.h"
 #include "model/urdf/import.h"
+#include "model/urdf/mesh_loader.h"
 #include "model/urdf/tree.h"
 
 namespace limber::model {
@@ -20,6 +21,7 @@ struct UrdfBuildContext {
   const std::vector<UrdfNode>& tree;
   const ImportOptions& options;
   Problems& problems;
+  MeshLoader& meshes;
   BodyModel& model;
   std::vector<int> body_link;   ///< By node: index of the model's link that it is, or was merged into.
   std::vector<Pose> offset;     ///< By node: its frame in that link's frame.

@@ -115,7 +115,7 @@ void check_missing_collisions(UrdfBuildContext& build) {
 
 void check_hollow_meshes(UrdfBuildContext& build) {
   std::size_t count = 0;
-  std::string text;
+  std::string text, fix;
   int line = 0;
   for (std::size_t i = 0; i < build.model.links.size(); ++i) {
     for (const PlacedShape& placed : build.model.links[i].collisions) {
@@ -124,14 +124,19 @@ void check_hollow_meshes(UrdfBuildContext& build) {
       const double volume = enclosed_volume(*mesh);
       if (volume <= 0 || mesh->hull_volume <= kHollowRatio * volume || count++ > 0) continue;
       line = line_of_link(build, static_cast<int>(i));
-      text = fmt::format("link '{}': the convex hull of collision mesh '{}' fills its hollows: {:.3g} times its volume",
-                         printable(build.model.links[i].name), printable(mesh->name), mesh->hull_volume / volume);
+      const std::string hulls =
+          mesh->pieces.empty() ? "convex hull" : fmt::format("{} convex pieces", mesh->pieces.size());
+      text = fmt::format("link '{}': the {} of collision mesh '{}' {} its hollows: {:.3g} times its volume",
+                         printable(build.model.links[i].name), hulls, printable(mesh->name),
+                         mesh->pieces.empty() ? "fills" : "fill", mesh->hull_volume / volume);
+      fix = mesh->pieces.empty()
+                ? "Write concave=\"yes\" in its <mesh>, or split it into convex objects, if things must fit inside."
+                : "Split it into convex objects, if things must fit inside.";
     }
   }
   if (count == 0) return;
   if (count > 1) text += fmt::format(" … and {} more of this kind", count - 1);
-  build.problems.warning(line, std::move(text),
-                         "Split the mesh into convex pieces, one <collision> for each, if things must fit inside.");
+  build.problems.warning(line, std::move(text), fix);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ Result<std::shared_ptr<const BodyModel>> import_bytes(std::string_view bytes, co
   model->file = path;
   MeshLoader mesh_loader(path, options, meshes, problems);
   mesh_loader.run(*file, *tree);
-  UrdfBuildContext build{*file, *tree, options, problems, *model, {}, {}, {}};
+  UrdfBuildContext build{*file, *tree, options, problems, mesh_loader, *model, {}, {}, {}};
   if (const Result<void> built = build_body(build); !built)
     return Error{fmt::format("{}: {}", shown_path, built.error())};
   model->problems = problems.release();

@@ -13,6 +13,7 @@
 #include "model/look/mesh_look.h"
 #include "model/mesh/heightfield.h"
 #include "model/mesh/load.h"
+#include "model/pieces/decompose.h"
 
 namespace limber::model {
 
@@ -141,6 +142,29 @@ void MeshLoader::report_look(const UrdfShape& shape, const MeshModel& mesh) {
     } else {
       problems_.warning(shape.line, text, problem.fix);
     }
+  }
+}
+
+void MeshLoader::decompose(UrdfShape& shape, const std::string& owner) {
+  const MeshModel& mesh = *shape.shape.mesh;
+  if (decomposed_.insert(&mesh).second) decomposed_triangles_ += mesh.triangles.size() / 3;
+  if (decomposed_triangles_ <= kMaxDecomposedTrianglesOfFile) {
+    shape.shape.mesh = meshes_.decomposed(shape.shape.mesh);
+  } else if (reported_.insert("|decomposed").second) {
+    problems_.warning(shape.line,
+                      fmt::format("{}: the concave meshes of the file have more than {} triangles; mesh '{}' and the "
+                                  "following ones collide as their hulls",
+                                  owner, kMaxDecomposedTrianglesOfFile, printable(shape.mesh_uri)),
+                      "Use simpler meshes for collisions.");
+  }
+}
+
+void MeshLoader::report_collision(const UrdfShape& shape, const std::string& owner) {
+  if (shape.shape.mesh == nullptr || shape.shape.mesh->collision_problems.empty()) return;
+  if (!reported_.insert(shape.mesh_uri + (shape.concave ? "|concave" : "|collision")).second) return;
+  for (const Problem& problem : shape.shape.mesh->collision_problems) {
+    problems_.warning(shape.line, fmt::format("{}: mesh '{}' {}", owner, printable(shape.mesh_uri), problem.text),
+                      problem.fix);
   }
 }
 

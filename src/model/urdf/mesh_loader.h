@@ -26,7 +26,13 @@ class MeshLoader {
   void run(UrdfFile& file, const std::vector<UrdfNode>& tree);
   /// Loads the mesh and the texture of a shape, if it has them; reports a mesh that can't be loaded as one of `owner`,
   /// and returns false. If the shape is `drawn`, reports colors and textures that are not drawn, once per file.
+  /// Problems of collision shapes are reported by report_collision().
   bool load(UrdfShape& shape, const std::string& owner, bool drawn = true);
+  /// Replaces the concave mesh of a shape by one that collides as several convex pieces, if the file's limit of
+  /// triangles allows it; otherwise reports that it collides as it is.
+  void decompose(UrdfShape& shape, const std::string& owner);
+  /// Reports what a mesh lacks as a collision shape, once per file.
+  void report_collision(const UrdfShape& shape, const std::string& owner);
   /// Appends the mesh files, with their hashes and URIs, to the model's lists.
   void list_files(BodyModel& model) const;
   /// Hash of the meshes' keys and contents, continued from `start`.
@@ -52,6 +58,8 @@ class MeshLoader {
   MeshLibrary& meshes_;
   Problems& problems_;
   std::map<std::string, MeshResult> results_;
+  std::set<const MeshModel*> decomposed_;
+  std::size_t decomposed_triangles_ = 0;
   std::map<std::string, std::uint64_t> file_hashes_;  // by file; 0: it could not be loaded
   std::map<std::string, std::string> paths_by_uri_;
   std::map<std::string, Result<std::shared_ptr<const Image>>> images_;  // by URI

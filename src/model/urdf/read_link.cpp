@@ -17,6 +17,7 @@ constexpr NumberRange kTensorRange{-1e12, 1e12, "within 1e12 kg·m²"};
 constexpr NumberRange kScaleRange{-1e6, 1e6, "within 1e6, not 0"};
 constexpr NumberRange kNormalRange{-1e6, 1e6, "within 1e6"};
 
+// PyBullet's attribute of links, collisions and geometries
 bool is_concave(const tinyxml2::XMLElement& element) {
   const char* const text = element.Attribute("concave");
   return text != nullptr && !same_name(text, "no") && !same_name(text, "false") && !same_name(text, "0");
