@@ -12,10 +12,19 @@ namespace limber::engine {
 
 namespace {
 
+bool same_geometry(const model::ShapeModel& a, const model::ShapeModel& b);
+
+bool same_pieces(const std::vector<model::PlacedShape>& a, const std::vector<model::PlacedShape>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const model::PlacedShape& x, const model::PlacedShape& y) {
+                      return same_geometry(x.shape, y.shape) && nearly_same(x.origin, y.origin);
+                    });
+}
+
 bool same_mesh(const std::shared_ptr<const model::MeshModel>& a, const std::shared_ptr<const model::MeshModel>& b) {
   if (a == b) return true;
   return a != nullptr && b != nullptr && a->hull == b->hull && a->vertices == b->vertices &&
-         a->triangles == b->triangles && same_look(*a, *b);
+         a->triangles == b->triangles && same_pieces(a->pieces, b->pieces) && same_look(*a, *b);
 }
 
 bool same_geometry(const model::ShapeModel& a, const model::ShapeModel& b) {
@@ -25,11 +34,7 @@ bool same_geometry(const model::ShapeModel& a, const model::ShapeModel& b) {
 }
 
 bool same_geometry(const ShapeDescription& a, const ShapeDescription& b) {
-  return same_geometry(a.model, b.model) &&
-         std::equal(a.children.begin(), a.children.end(), b.children.begin(), b.children.end(),
-                    [](const model::PlacedShape& x, const model::PlacedShape& y) {
-                      return same_geometry(x.shape, y.shape) && nearly_same(x.origin, y.origin);
-                    });
+  return same_geometry(a.model, b.model) && same_pieces(a.children, b.children);
 }
 
 bool same_construction(const PartDescription& a, const PartDescription& b) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <limits>
 
+#include "model/pieces/pieces.h"
 #include "sim/shapes/geometry.h"
 #include "sim/world/body.h"
 #include "sim/world/part.h"
@@ -53,7 +54,9 @@ const std::vector<Solid>& PartTree::solids_of(const Part& part) {
   const auto [entry, is_new] = solids_.try_emplace(geometry);
   if (is_new) {
     entry->second.geometry = part.geometry();
-    for (const model::PlacedShape& placed : geometry->placed) entry->second.list.emplace_back(placed);
+    for (const model::PlacedShape& placed : geometry->placed) {
+      for (const model::PlacedShape& convex : model::convex_shapes(placed)) entry->second.list.emplace_back(convex);
+    }
   }
   return entry->second.list;
 }

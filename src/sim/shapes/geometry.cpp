@@ -2,8 +2,10 @@
 #include "sim/shapes/geometry.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "model/mesh/mass_properties.h"
+#include "model/pieces/pieces.h"
 #include "sim/bullet/bullet.h"
 #include "sim/collision/surface_shape.h"
 #include "sim/shapes/ellipsoid_shape.h"
@@ -83,6 +85,12 @@ model::Inertial solid_inertial(const std::vector<model::PlacedShape>& shapes) {
   return model::combined(solids);
 }
 
+// Bullet rounds the edges of boxes by their margin, by default up to a tenth of the shortest half edge. Pieces of
+// meshes have edges as sharp as those of hulls, so that their common surface is that of the mesh.
+void sharpen(btCollisionShape& shape) {
+  if (shape.getShapeType() == BOX_SHAPE_PROXYTYPE) shape.setMargin(std::min(kMargin, shape.getMargin()));
+}
+
 // The collision shape; `at`: its pose relative to the center of mass, which hulls include in their points.
 std::shared_ptr<btCollisionShape> collision_shape(const model::ShapeModel& shape, const Pose& at, bool is_hull) {
   if (is_hull) return hull_shape(*shape.mesh, at);
@@ -92,16 +100,23 @@ std::shared_ptr<btCollisionShape> collision_shape(const model::ShapeModel& shape
 
 // Sets the collision shape: a single shape if possible, else a compound.
 void set_collision_shape(Geometry& geometry) {
-  const std::vector<model::PlacedShape>& shapes = geometry.placed;
+  std::vector<model::PlacedShape> shapes;
+  std::vector<bool> is_piece;
+  for (const model::PlacedShape& placed : geometry.placed) {
+    if (placed.shape.mesh != nullptr) geometry.meshes.push_back(placed.shape.mesh);
+    for (model::PlacedShape& convex : model::convex_shapes(placed)) shapes.push_back(std::move(convex));
+    is_piece.resize(shapes.size(), model::has_pieces(placed.shape));
+  }
   const Pose to_center = geometry.frame.inverse();
   auto compound = std::make_shared<btCompoundShape>(shapes.size() > 4);
-  for (const model::PlacedShape& placed : shapes) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const model::PlacedShape& placed = shapes[i];
     const Pose at = to_center * placed.origin;
     const bool is_hull =
         placed.shape.kind == model::ShapeKind::mesh && placed.shape.mesh != nullptr && placed.shape.surface == nullptr;
     std::shared_ptr<btCollisionShape> shape = collision_shape(placed.shape, at, is_hull);
     if (shape == nullptr) continue;
-    if (placed.shape.mesh != nullptr) geometry.meshes.push_back(placed.shape.mesh);
+    if (is_piece[i]) sharpen(*shape);
     if (shapes.size() == 1 && (is_hull || is_identity(at))) {
       geometry.shape = shape;
       return;
