@@ -241,6 +241,19 @@ print(body:part("hull").center, body:part("both").shape)
   EXPECT_EQ(fixture.host.printed, Lines{"vec3(25, 1, 1)\tshape 'both'"});
 }
 
+TEST(Scene, ConcaveMeshesComeFromFiles) {
+  for (const auto& [options, error] : std::vector<std::pair<std::string, std::string>>{
+           {"concave = true", "concave needs the surface of a mesh file, not points"},
+           {"concave = 1", "concave is true or false, not 1"},
+           {"concave = false", ""}}) {
+    ScriptFixture fixture;
+    const std::string points = "{ vec3(), vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1) }";
+    const std::string result = fixture.run("sim:add_convex_mesh_shape('m', " + points + ", { " + options + " })");
+    EXPECT_NE(result.find(error), std::string::npos) << result;
+    EXPECT_EQ(result.empty(), error.empty()) << result;
+  }
+}
+
 TEST(Scene, TheCommandLineOverridesTheSeed) {
   const std::string draw = "sim.seed = 7 print(rng:uniform(), math.random(1000), sim.seed)";
   ScriptFixture plain;

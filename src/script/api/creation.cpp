@@ -1,6 +1,8 @@
 // C API: creating bodies, parts, joints, motors, shapes; loading model files (URDF, MJCF).
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -77,6 +79,20 @@ std::shared_ptr<model::MeshModel> mesh_of_points(std::vector<Vec3> points, std::
   return mesh;
 }
 
+// gives each piece that is a hull at most `max_vertices`
+void limit_pieces(model::MeshModel& mesh, int max_vertices) {
+  for (model::PlacedShape& piece : mesh.pieces) {
+    if (piece.shape.mesh == nullptr) continue;
+    auto changed = std::make_shared<model::MeshModel>(*piece.shape.mesh);
+    const model::Hull hull = model::reduced_hull(
+        changed->vertices, {std::min(16, max_vertices), max_vertices, model::HullLimits{}.tolerance});
+    changed->hull = hull.vertices;
+    changed->hull_error = hull.error;
+    mesh.hull_error = std::max(mesh.hull_error, hull.error);
+    piece.shape.mesh = std::move(changed);
+  }
+}
+
 Error not_loaded(std::string_view file) {
   return Error{
       fmt::format("'{}' was not loaded with these options when the scene ran; callbacks can't read files, so load it "
@@ -84,8 +100,10 @@ Error not_loaded(std::string_view file) {
                   file)};
 }
 
-// Reports the colors and textures of a mesh file that are not drawn.
-void report_look(const std::string& path, const model::MeshModel& mesh) {
+// Reports the colors and textures of a mesh file that are not drawn, and what it lacks as a collision shape.
+void report_problems(const std::string& path, const model::MeshModel& mesh) {
+  for (const model::Problem& problem : mesh.collision_problems)
+    log_warning("{}: {}. {}", printable(path), problem.text, problem.fix);
   if (mesh.look == nullptr) return;
   for (const model::Problem& problem : mesh.look->problems) {
     if (problem.severity != model::Severity::note)
@@ -93,28 +111,38 @@ void report_look(const std::string& path, const model::MeshModel& mesh) {
   }
 }
 
+struct MeshOptions {
+  Vec3 scale{1};
+  int max_vertices = model::HullLimits{}.max_vertices;
+  bool concave = false;
+};
+
 Result<std::shared_ptr<const model::MeshModel>> read_mesh(const ScriptContext& c, std::string_view file,
-                                                          const Vec3& scale, int max_vertices) {
+                                                          const MeshOptions& options) {
   const Result<std::string> path = c.sources->find(c.files, file);
   if (!path) return Error{path.error()};
-  Result<std::shared_ptr<const model::MeshModel>> mesh = c.sources->mesh(*path, scale);
-  if (mesh) report_look(*path, **mesh);
+  Result<std::shared_ptr<const model::MeshModel>> mesh = c.sources->mesh(*path, options.scale, options.concave);
+  if (mesh) report_problems(*path, **mesh);
+  const int max_vertices = options.max_vertices;
   if (!mesh || max_vertices == model::HullLimits{}.max_vertices) return mesh;
   auto changed = std::make_shared<model::MeshModel>(**mesh);
   const model::Hull hull =
       model::reduced_hull(changed->vertices, {std::min(16, max_vertices), max_vertices, model::HullLimits{}.tolerance});
   changed->hull = hull.vertices;
   changed->hull_error = hull.error;
+  limit_pieces(*changed, max_vertices);
   return std::shared_ptr<const model::MeshModel>(std::move(changed));
 }
 
-Result<std::shared_ptr<const model::MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file, const Vec3& scale,
-                                                             int max_vertices) {
-  const std::string key = fmt::format("{}|{:a}|{:a}|{:a}|{}", file, scale.x, scale.y, scale.z, max_vertices);
+Result<std::shared_ptr<const model::MeshModel>> mesh_of_file(ScriptContext& c, std::string_view file,
+                                                             const MeshOptions& options) {
+  const Vec3& scale = options.scale;
+  const std::string key = fmt::format("{}|{:a}|{:a}|{:a}|{}{}", file, scale.x, scale.y, scale.z, options.max_vertices,
+                                      options.concave ? "|concave" : "");
   const auto known = c.loaded.meshes.find(key);
   if (known != c.loaded.meshes.end()) return known->second;
   if (c.answer.top_level == 0) return not_loaded(file);
-  Result<std::shared_ptr<const model::MeshModel>> mesh = read_mesh(c, file, scale, max_vertices);
+  Result<std::shared_ptr<const model::MeshModel>> mesh = read_mesh(c, file, options);
   if (mesh) c.loaded.meshes[key] = *mesh;
   return mesh;
 }
@@ -302,14 +330,14 @@ void mesh_clear(void* c) { context_of(c).arguments.mesh_points.clear(); }
 void mesh_point(void* c, double x, double y, double z) { context_of(c).arguments.mesh_points.emplace_back(x, y, z); }
 
 std::int32_t add_mesh_shape(void* c, const char* name, std::int32_t length, const char* file, std::int32_t file_length,
-                            double sx, double sy, double sz, std::int32_t max_vertices) {
+                            double sx, double sy, double sz, std::int32_t max_vertices, std::int32_t concave) {
   ScriptContext& context = context_of(c);
   if (is_full(context)) return kRejected;
   const Vec3 scale(sx, sy, sz);
   model::ShapeModel model;
   model.kind = model::ShapeKind::mesh;
   if (file_length > 0) {
-    const auto mesh = mesh_of_file(context, text_of(file, file_length), scale, max_vertices);
+    const auto mesh = mesh_of_file(context, text_of(file, file_length), {scale, max_vertices, concave != 0});
     if (!mesh) return context.reject(mesh.error());
     model.mesh = *mesh;
   } else {

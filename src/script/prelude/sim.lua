@@ -81,7 +81,7 @@ for _, kind in ipairs { "cylinder", "capsule", "cone" } do
 end
 method("add_compound_shape", function(_, name) return add_shape(name, "compound") end)
 
-local mesh_opts = { scale = true, max_vertices = true }
+local mesh_opts = { scale = true, max_vertices = true, concave = true }
 method("add_convex_mesh_shape", function(_, name, source, opts)
   local subject = "add_convex_mesh_shape"
   P.check_text(name, subject .. ": the name")
@@ -98,6 +98,11 @@ method("add_convex_mesh_shape", function(_, name, source, opts)
   if max_vertices < 4 or max_vertices > 255 then
     fail("%s: max_vertices is 4 .. 255, not %s", subject, tostring(max_vertices))
   end
+  local concave = opts.concave
+  if concave ~= nil and type(concave) ~= "boolean" then
+    fail("%s: concave is true or false, not %s", subject, describe(concave))
+  end
+  if concave and not from_file then fail("%s: concave needs the surface of a mesh file, not points", subject) end
   for _, x in ipairs { scale.x, scale.y, scale.z } do
     if P.check_number(x, subject .. ": scale") == 0 then fail("%s: scale must not be 0", subject) end
   end
@@ -110,7 +115,8 @@ method("add_convex_mesh_shape", function(_, name, source, opts)
     end
   end
   local file = from_file and source or ""
-  P.handle_result(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, max_vertices))
+  P.handle_result(api.add_mesh_shape(ctx, name, #name, file, #file, scale.x, scale.y, scale.z, max_vertices,
+    concave and 1 or 0))
   return P.answered_handle()
 end)
 

@@ -107,13 +107,16 @@ Result<std::shared_ptr<const model::BodyModel>> Sources::model(const std::string
   return models_[key] = *model;
 }
 
-Result<std::shared_ptr<const model::MeshModel>> Sources::mesh(const std::string& path, const Vec3& scale) {
-  const std::string key = fmt::format("{}|{:a}|{:a}|{:a}", path, scale.x, scale.y, scale.z);
+Result<std::shared_ptr<const model::MeshModel>> Sources::mesh(const std::string& path, const Vec3& scale,
+                                                              bool concave) {
+  const std::string key =
+      fmt::format("{}|{:a}|{:a}|{:a}{}", path, scale.x, scale.y, scale.z, concave ? "|concave" : "");
   contents_.try_emplace(path, 0);
   const auto* before = find_known(&Sources::meshes_, key);
   model::ModelLibrary& library = from_archive() ? *earlier_->library_ : models();
   Result<std::shared_ptr<const model::MeshModel>> mesh = before ? *before : library.meshes().load(path, scale);
   if (!mesh) return mesh;
+  if (concave && !before) mesh = library.meshes().decomposed(*mesh);
   contents_[path] = (*mesh)->content_hash;
   if ((*mesh)->look != nullptr) {
     for (const auto& [file, hash] : (*mesh)->look->files) contents_[file] = hash;

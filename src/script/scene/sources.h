@@ -52,7 +52,8 @@ class Sources {
   /// The text that added_text() has returned.
   const std::string& added() const { return added_; }
   Result<std::shared_ptr<const model::BodyModel>> model(const std::string& path, const model::ImportOptions& options);
-  Result<std::shared_ptr<const model::MeshModel>> mesh(const std::string& path, const Vec3& scale);
+  Result<std::shared_ptr<const model::MeshModel>> mesh(const std::string& path, const Vec3& scale,
+                                                       bool concave = false);
   Result<std::shared_ptr<const model::Image>> image(const std::string& path);
 
   /// Ends the run: drops the reference to the earlier run.
