@@ -8,6 +8,7 @@
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
+#include "model/mesh/surface.h"
 #include "model/urdf/import.h"
 
 namespace limber::app {
@@ -96,6 +97,42 @@ TEST(Inspect, ListsColorsAndLinksWithoutCollision) {
   const std::string table = inspect_table(**imported);
   EXPECT_NE(table.find("\n  0.8 0.6 0.5 1: a, b\n  0 0 1 0.5: b\n"), std::string::npos) << table;
   EXPECT_NE(table.find("links without collision shapes (they touch nothing)\n  b\n"), std::string::npos) << table;
+}
+
+TEST(Inspect, ListsHullsSurfacesAndTendons) {
+  model::BodyModel m = model();
+  auto mesh = std::make_shared<model::MeshModel>();
+  mesh->name = "angle";
+  mesh->pieces.resize(2);  // boxes
+  mesh->closed = true;
+  mesh->unit_inertial.mass = 2;
+  mesh->hull_volume = 2.5;
+  model::PlacedShape& shape = m.links[1].collisions.emplace_back();
+  shape.shape.kind = model::ShapeKind::mesh;
+  shape.shape.mesh = mesh;
+  auto triangle = std::make_shared<model::MeshModel>();
+  triangle->vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  triangle->triangles = {0, 1, 2};
+  model::PlacedShape& ground = m.links[0].collisions.emplace_back(shape);
+  ground.shape.mesh = triangle;
+  ground.shape.surface = std::make_shared<model::Surface>(triangle);
+  m.tendons.push_back({"cable", {{0, {}}, {1, {}}}, 100, 2, 0.5, false, {}});
+  const json all = json::parse(inspect_json(m));
+  EXPECT_EQ(all.at("hulls"),
+            json({{{"link", "arm"}, {"mesh", "angle"}, {"count", 2}, {"volume_ratio", 1.25}, {"error", 0.0}}}));
+  EXPECT_EQ(all.at("surfaces"), json({{{"link", "base"}, {"triangles", 1}}}));
+  EXPECT_EQ(all.at("tendons"), json({{{"name", "cable"},
+                                      {"links", {"base", "arm"}},
+                                      {"stiffness", 100.0},
+                                      {"damping", 2.0},
+                                      {"rest", 0.5},
+                                      {"pushes", false}}}));
+  const std::string table = inspect_table(m);
+  for (const char* part :
+       {"surface of 1 triangle", "2 convex pieces (2 boxes; 1.25 times the mesh's volume, farthest vertex 0 m outside)",
+        "\ntendons\n  cable: through base, arm, 100 N/m, 2 N·s/m, rest length 0.5 m\n"}) {
+    EXPECT_NE(table.find(part), std::string::npos) << part << "\n" << table;
+  }
 }
 
 TEST(Inspect, JsonLimitsAreNullWhenFree) {

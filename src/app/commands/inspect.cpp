@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -144,20 +146,69 @@ void add_loops(const model::BodyModel& model, std::string& out) {
   }
 }
 
+std::vector<std::string> tendon_links(const model::BodyModel& model, const model::TendonModel& tendon) {
+  std::vector<std::string> links;
+  for (const model::TendonModel::Point& point : tendon.points)
+    links.push_back(model.links[static_cast<std::size_t>(point.link)].name);
+  return links;
+}
+
+void add_tendons(const model::BodyModel& model, std::string& out) {
+  if (!model.tendons.empty()) out += "\ntendons\n";
+  for (const model::TendonModel& tendon : model.tendons) {
+    std::vector<std::string> links = tendon_links(model, tendon);
+    for (std::string& name : links) name = printable(name);
+    out += fmt::format("  {}: through {}, {:.6g} N/m, {:.6g} N·s/m, rest length {}{}\n", printable(tendon.name),
+                       fmt::join(links, ", "), tendon.stiffness, tendon.damping,
+                       tendon.rest ? fmt::format("{:.6g} m", *tendon.rest) : "that of the start",
+                       tendon.pushes ? ", also pushes" : "");
+  }
+}
+
+Json tendons_json(const model::BodyModel& model) {
+  Json tendons = Json::array();
+  for (const model::TendonModel& tendon : model.tendons) {
+    tendons.push_back({{"name", tendon.name},
+                       {"links", tendon_links(model, tendon)},
+                       {"stiffness", tendon.stiffness},
+                       {"damping", tendon.damping},
+                       {"rest", tendon.rest ? Json(*tendon.rest) : Json()},
+                       {"pushes", tendon.pushes}});
+  }
+  return tendons;
+}
+
+// the volume of a mesh's hulls, relative to its own; 0: it isn't closed
+double volume_ratio(const model::MeshModel& mesh) {
+  return mesh.closed && mesh.unit_inertial.mass > 0 ? mesh.hull_volume / mesh.unit_inertial.mass : 0;
+}
+
+// "sphere", "hull of 8 points (1.02 times the mesh's volume, farthest vertex 0 m outside)",
+// "8 hulls (3 boxes, 5 hulls; …)"
+std::string collision_text(const model::PlacedShape& placed) {
+  if (placed.shape.surface != nullptr)
+    return fmt::format("surface of {}", counted(placed.shape.surface->size(), "triangle"));
+  const model::MeshModel* const mesh = placed.shape.mesh.get();
+  if (placed.shape.kind != model::ShapeKind::mesh || mesh == nullptr) return kind_name(placed.shape.kind);
+  const double ratio = volume_ratio(*mesh);
+  const std::string quality =
+      fmt::format("{}farthest vertex {:.2g} m outside",
+                  ratio > 0 ? fmt::format("{:.3g} times the mesh's volume, ", ratio) : "", mesh->hull_error);
+  if (mesh->pieces.empty()) return fmt::format("hull of {} ({})", counted(mesh->hull.size(), "point"), quality);
+  std::map<std::string, std::size_t> kinds;
+  for (const model::PlacedShape& piece : mesh->pieces) kinds[kind_name(piece.shape.kind)]++;
+  std::string list;
+  for (const auto& [kind, count] : kinds)
+    list += fmt::format("{}{}", list.empty() ? "" : ", ",
+                        kind == "box" ? counted(count, "box", "boxes") : counted(count, kind));
+  return fmt::format("{} convex pieces ({}; {})", mesh->pieces.size(), list, quality);
+}
+
 void add_body(const model::BodyModel& model, std::string& out) {
   out += "\nresulting body (mass 0: fixed to the world)\n";
   for (const model::LinkModel& link : model.links) {
     out += fmt::format("  {}: {:.6g} kg", printable(link.name), link.inertial.mass);
-    for (const model::PlacedShape& s : link.collisions) {
-      if (s.shape.surface != nullptr) {
-        out += fmt::format(", surface of {}", counted(s.shape.surface->size(), "triangle"));
-        continue;
-      }
-      out += fmt::format(", {}", kind_name(s.shape.kind));
-      if (s.shape.kind != model::ShapeKind::mesh || !s.shape.mesh) continue;
-      out += fmt::format(" of {} (farthest vertex {:.2g} m outside)", counted(s.shape.mesh->hull.size(), "point"),
-                         s.shape.mesh->hull_error);
-    }
+    for (const model::PlacedShape& s : link.collisions) out += ", " + collision_text(s);
     if (!link.self_collision) out += ", does not collide with its own body (selfCollide)";
     out += '\n';
   }
@@ -245,6 +296,36 @@ int render_model(const InspectCommand& command, const std::string& file) {
   return play_command(play);
 }
 
+// the meshes that collide as hulls, with the number of their hulls
+Json hulls_json(const model::BodyModel& model) {
+  Json hulls = Json::array();
+  for (const model::LinkModel& link : model.links) {
+    for (const model::PlacedShape& placed : link.collisions) {
+      const model::MeshModel* const mesh = placed.shape.mesh.get();
+      if (placed.shape.kind != model::ShapeKind::mesh || mesh == nullptr || placed.shape.surface != nullptr) continue;
+      const double ratio = volume_ratio(*mesh);
+      hulls.push_back({{"link", link.name},
+                       {"mesh", mesh->name},
+                       {"count", std::max<std::size_t>(1, mesh->pieces.size())},
+                       {"volume_ratio", ratio > 0 ? Json(ratio) : Json()},
+                       {"error", mesh->hull_error}});
+    }
+  }
+  return hulls;
+}
+
+// the meshes of fixed links that collide as they are
+Json surfaces_json(const model::BodyModel& model) {
+  Json surfaces = Json::array();
+  for (const model::LinkModel& link : model.links) {
+    for (const model::PlacedShape& placed : link.collisions) {
+      if (placed.shape.surface == nullptr) continue;
+      surfaces.push_back({{"link", link.name}, {"triangles", placed.shape.surface->size()}});
+    }
+  }
+  return surfaces;
+}
+
 }  // namespace
 
 std::string inspect_json(const model::BodyModel& model) {
@@ -276,9 +357,12 @@ std::string inspect_json(const model::BodyModel& model) {
                  {"links", links},
                  {"joints", joints},
                  {"loops", loops},
+                 {"tendons", tendons_json(model)},
                  {"excluded_pairs", pairs},
                  {"no_self_collision", no_self_collision},
                  {"no_collision", links_without_collision(model)},
+                 {"hulls", hulls_json(model)},
+                 {"surfaces", surfaces_json(model)},
                  {"materials", materials},
                  {"problems", problems}};
   return all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -294,6 +378,7 @@ std::string inspect_table(const model::BodyModel& model) {
   if (!model.file_joints.empty()) add_joints(model, out);
   add_mimics(model, out);
   add_loops(model, out);
+  add_tendons(model, out);
   add_body(model, out);
   add_colors(model, out);
   add_links_without_collision(model, out);
