@@ -888,9 +888,11 @@ function sim:add_cone_shape(name, radius, height) end
 
 ---@class mesh_opts
 ---@field scale? number|vec3like # default 1.
----@field max_vertices? integer # 4 .. 255, default 64 for a file, 255 for a list.
+---@field max_vertices? integer # 4 .. 255 for each hull, default 64 for a file, 255 for a list.
+---@field concave? boolean # true decomposes the mesh of a file into convex pieces, which leave its hollows free.
 
----Creates the convex hull of a mesh file, or of points.
+---Creates the convex hull of a mesh file, or of points. An OBJ or glTF file of several
+---objects gives one hull for each.
 ---@param name string # A name of your choice, unique among shapes.
 ---@param source string|vec3like[] # A file (STL, OBJ, DAE, PLY or glTF), or a list of points, m.
 ---@param opts? mesh_opts
