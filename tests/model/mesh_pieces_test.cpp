@@ -12,6 +12,7 @@
 #include "model/mesh/load.h"
 #include "model/mesh/mass_properties.h"
 #include "model/overlap.h"
+#include "model/pieces/decompose.h"
 #include "solids.h"
 
 namespace limber::model {
@@ -60,6 +61,7 @@ TEST(MeshPieces, ObjectsOfObjFilesBecomePieces) {
   EXPECT_FALSE(mesh->primitive);
   EXPECT_TRUE(mesh->closed);
   EXPECT_TRUE(mesh->collision_problems.empty());
+  EXPECT_EQ(decomposed(mesh), mesh) << "its objects are convex";
   EXPECT_NEAR(mesh->hull_volume, 7, 1e-9) << "the sum of the pieces, not the hull of 9 m³";
   // mass properties of three boxes, by the parallel axis theorem
   EXPECT_NEAR(mesh->unit_inertial.mass, 7, 1e-9);

@@ -384,6 +384,9 @@ Decomposition decompose(std::span<const Vec3> vertices, std::span<const unsigned
 }
 
 std::shared_ptr<const MeshModel> decomposed(const std::shared_ptr<const MeshModel>& mesh) {
+  // objects that are convex, as programs for convex decomposition write them
+  if (!mesh->pieces.empty() && mesh->closed && mesh->hull_volume <= kMaxJoinedGrowth * mesh->unit_inertial.mass)
+    return mesh;
   const char* const result = mesh->pieces.empty() ? "its hull" : "the hulls of its objects";
   if (!is_watertight(mesh->triangles)) {
     return with_problem(*mesh, fmt::format("is open, so that its hollows are unknown; it collides as {}", result),

@@ -36,8 +36,8 @@ struct Decomposition {
 Decomposition decompose(std::span<const Vec3> vertices, std::span<const unsigned> triangles,
                         const DecompositionLimits& limits = {});
 
-/// Returns a mesh with the pieces of its decomposition. A convex mesh, and one that can't be decomposed because it is
-/// open or too large (which it reports), stays as it is. [any]
+/// Returns a mesh with the pieces of its decomposition. A convex mesh, one whose objects are convex, and one that can't
+/// be decomposed because it is open or too large (which it reports), stays as it is. [any]
 std::shared_ptr<const MeshModel> decomposed(const std::shared_ptr<const MeshModel>& mesh);
 
 }  // namespace limber::model
