@@ -148,7 +148,7 @@ void Engine::publish() {
                             show_.pacer.lost_time());
   const std::optional<TakeNode::Status> replayed = playback_.status();
   session.take_node.publish(replayed ? *replayed : recording_.status().value_or(TakeNode::Status{}));
-  session.publisher.publish(session.transport.paused(), show_.pacer.speed_reached(), times_);
+  session.publisher.publish(session.transport.paused(), show_.pacer.speed_reached(), times_, is_replaying());
 }
 
 void Engine::make_value_snapshot() {

@@ -15,6 +15,8 @@ constexpr std::array kUnits = {
     Unit{"µs", "microsecond of the processor"},
     Unit{"rad", "radian"},
     Unit{"deg", "degree"},
+    Unit{"deg/s", "degree per second"},
+    Unit{"deg/s²", "degree per second squared"},
     Unit{"Hz", "per second"},
     Unit{"m/s", "meter per second"},
     Unit{"m/s²", "meter per second squared"},

@@ -29,13 +29,14 @@ constexpr std::array kModules{
     Module{"engine", "properties model sim script"},
     // Modules outside the simulation thread see commands, snapshots and the catalog, but no simulation objects.
     Module{"net/osc", "properties model engine"},
+    Module{"net/lighting", "properties model engine"},
     Module{"net/console", "properties model engine"},
     Module{"net/oscquery", "properties model engine"},
     Module{"ui/render", "properties model engine"},
     Module{"ui/panel", "properties model engine"},
     // motion files, without access to the scene
     Module{"export", ""},
-    Module{"app", "properties model sim script engine net/osc net/console net/oscquery ui/render ui/panel export"},
+    Module{"app", "properties model sim script engine net/osc net/lighting net/console net/oscquery ui/render ui/panel export"},
 };
 
 /// Folders that only files of their own module include.
@@ -59,6 +60,7 @@ constexpr std::array kNamespaces{
     Namespace{"script/", "script"},
     Namespace{"engine/", "engine"},
     Namespace{"net/osc/", "osc"},
+    Namespace{"net/lighting/", "lighting"},
     Namespace{"net/console/", "console"},
     Namespace{"net/oscquery/", "oscquery"},
     Namespace{"ui/render/", "render"},

@@ -73,6 +73,14 @@ void add_network(CLI::App& play, NetworkOptions& o) {
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->check(CLI::Validator([](std::string& text) { return host_name_fault(text); }, "", "host name"));
+  play.add_flag("--lights", o.lights,
+                "Arm the output to lights from the start. Replays and --fast send to lights only with this option.");
+  play.add_option("--lights-out", o.lights_out,
+                  "Where the values of lighting fixtures are sent while the output is armed; default sacn; may be "
+                  "repeated. Settings after it: rate=44, priority=100, sync=1, interface=10.0.0.2, name=Limber, "
+                  "exit=blackout|hold, panic=hold|blackout.")
+      ->type_name("artnet|sacn[:ADDR[:PORT]][,...]|off")
+      ->allow_extra_args(false);
   play.add_flag("--osc-optional", o.osc_optional, "Continue if a port is not available.");
 }
 

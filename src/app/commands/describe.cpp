@@ -16,6 +16,7 @@
 #include "base/text.h"
 #include "engine/engine.h"
 #include "properties/property_text.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
@@ -80,8 +81,9 @@ std::vector<const PropertyTable*> described_classes() {
     if (type->group_table != nullptr) all.push_back(type->group_table);
   }
   all.insert(all.end(), {&sim::Visuals::table(), &sim::Camera::table(), &sim::Appearance::table(), &sim::Shape::table(),
-                         &engine::Transport::table(), &engine::PresetNode::table(), &engine::EditNode::table(),
-                         &engine::TakeNode::table(), &engine::CounterNode::table()});
+                         &sim::FixtureList::table(), &sim::Fixture::table(), &engine::Transport::table(),
+                         &engine::PresetNode::table(), &engine::EditNode::table(), &engine::TakeNode::table(),
+                         &engine::CounterNode::table()});
   return all;
 }
 

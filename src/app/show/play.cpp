@@ -28,6 +28,7 @@
 #include "base/text.h"
 #include "engine/engine.h"
 #include "net/console/server.h"
+#include "net/lighting/output.h"
 #include "net/osc/network.h"
 
 namespace limber::app {
@@ -88,6 +89,20 @@ Result<osc::OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
   return osc;
 }
 
+Result<lighting::LightingOptions> parse_lights(const PlayOptions& options) {
+  lighting::LightingOptions lights;
+  lights.lights = options.network.lights;
+  lights.in_real_time = !options.fast;
+  static const std::vector<std::string> kDefault = {"sacn"};
+  for (const std::string& text : options.network.lights_out.empty() ? kDefault : options.network.lights_out) {
+    auto targets = lighting::parse_lights_out(text);
+    if (!targets) return Error{targets.error()};
+    lights.targets.insert(lights.targets.end(), targets->begin(), targets->end());
+  }
+  if (options.fast && !options.network.lights) lights.targets.clear();
+  return lights;
+}
+
 Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std::string& scene) {
   engine::EngineOptions engine;
   engine.scene = scene;
@@ -110,6 +125,7 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
   if (engine.in_real_time() && options.take.replay.empty() && !options.display.offline() && !state.empty())
     engine.recovery_folder = state + "/recovery";
   engine.recover = options.recover;
+  if (options.network.lights && engine.replay.empty()) engine.sets.push_back({"/lighting/armed", {Arg::of(true)}});
   for (const std::string& text : options.sets) {
     Result<Message> set = parse_set(text);
     if (!set) return Error{set.error()};
@@ -149,6 +165,13 @@ void retry_query(const std::optional<ListenAddress>& at, oscquery::QueryServer& 
 
 using QueryAddresses = std::optional<std::vector<ListenAddress>>;
 
+// the parsed options of everything that the show is connected to
+struct Outputs {
+  osc::OscOptions osc;
+  QueryAddresses query;
+  lighting::LightingOptions lights;
+};
+
 // opens the ports of OSC and OSCQuery and prints them
 Result<void> open_ports(const osc::OscOptions& osc, const std::optional<ListenAddress>& at, osc::Network& network,
                         oscquery::QueryServer& query) {
@@ -181,17 +204,18 @@ class PanicSignal {
 // Owns the engine, the network and the other services of a running show.
 class Playing {
  public:
-  Playing(const PlayOptions& options, engine::EngineOptions engine_options, const osc::OscOptions& osc,
-          const QueryAddresses& query_addresses, const std::optional<ModelScene>& model)
+  Playing(const PlayOptions& options, engine::EngineOptions engine_options, const Outputs& outputs,
+          const std::optional<ModelScene>& model)
       : options_(options),
-        osc_(osc),
-        query_addresses_(query_addresses),
+        osc_(outputs.osc),
+        query_addresses_(outputs.query),
         scene_file_(engine_options.scene),
         models_(model, options.package_paths),
         engine_(link_, with_notifier(std::move(engine_options))),
-        network_(link_, osc, engine::transient_offsets()),
+        network_(link_, osc_, engine::transient_offsets()),
+        lights_(link_, outputs.lights),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
-        query_(link_, query_host(network_, osc.allow, options.network.query_names)) {
+        query_(link_, query_host(network_, osc_.allow, options.network.query_names)) {
     if ((!options.fast || options.watch) && options.take.replay.empty())
       scene_loader_.emplace(link_, engine_, scene_file_, &models_);
   }
@@ -231,7 +255,10 @@ class Playing {
 
  private:
   engine::EngineOptions with_notifier(engine::EngineOptions options) {
-    options.on_iteration = [this] { notifier_.on_iteration(); };
+    options.on_iteration = [this] {
+      notifier_.on_iteration();
+      lights_.notify();
+    };
     return options;
   }
   // runs the scene, then opens the ports; returns the exit code if the show can't be played
@@ -243,6 +270,10 @@ class Playing {
         query_address(query_addresses_, osc::effective_config(osc_, link_.osc_config.read().get()));
     if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
       return fail_start(kMachineError, open.error());
+    lights_.start();
+    if (options_.network.lights) {
+      for (const std::string& line : lights_.status_lines()) print_notice("{}", line);
+    }
     if (!options_.fast) open_console(console_);
     loop.set_retry([this, at] {
       retry_query(at, query_);
@@ -262,6 +293,7 @@ class Playing {
       engine_.end_recovery();
       guard.files_written();
       scene_loader_.reset();
+      lights_.stop();
       query_.stop();
       network_.stop();
       console_.stop();
@@ -279,6 +311,7 @@ class Playing {
   ServiceNotifier notifier_;
   engine::Engine engine_;
   osc::Network network_;
+  lighting::LightingOutput lights_;
   console::ConsoleServer console_;
   std::optional<SceneLoader> scene_loader_;
   oscquery::QueryServer query_;
@@ -293,6 +326,7 @@ std::string ignored_options(const PlayOptions& options) {
   add(!options.network.osc_in.empty() && options.network.osc_in != "off", "--osc-in");
   add(!options.network.osc_out.empty() && options.network.osc_out.front() != "off", "--osc-out");
   add(!options.network.query.empty() && options.network.query != "off", "--query");
+  add(options.network.lights, "--lights");
   add(options.watch, "--watch");
   return names;
 }
@@ -346,7 +380,7 @@ Result<void> check_options(const PlayOptions& options) {
 }
 
 // finds the scene or model, then plays it, renders it or writes its scene
-int play_file(const PlayOptions& options, const osc::OscOptions& osc, const QueryAddresses& query) {
+int play_file(const PlayOptions& options, const Outputs& outputs) {
   const Result<PlayedFile> played = options.take.replay.empty()
                                         ? find_played(options.scene, options.package_paths, options.root)
                                         : PlayedFile{options.scene, std::nullopt};
@@ -357,7 +391,7 @@ int play_file(const PlayOptions& options, const osc::OscOptions& osc, const Quer
   if (!played) return fail(kInputError, played.error());
   if (!options.save_scene.file.empty()) return save_scene(options, played->model);
   if (options.display.offline()) return render_scene(options, std::move(*engine_options));
-  return std::make_unique<Playing>(options, std::move(*engine_options), osc, query, played->model)->play();
+  return std::make_unique<Playing>(options, std::move(*engine_options), outputs, played->model)->play();
 }
 
 }  // namespace
@@ -378,7 +412,9 @@ int play_command(const PlayOptions& options) {
   Result<QueryAddresses> query = parse_query(options.network.query);
   if (!query) return fail(kUsageError, query.error());
   if (options.fast && !*query) query->emplace();  // no port either
-  return play_file(options, *osc, *query);
+  Result<lighting::LightingOptions> lights = parse_lights(options);
+  if (!lights) return fail(kUsageError, lights.error());
+  return play_file(options, {std::move(*osc), std::move(*query), std::move(*lights)});
 }
 
 }  // namespace limber::app

@@ -27,6 +27,8 @@ struct NetworkOptions {
   bool osc_optional = false;
   std::string query;  ///< Empty: not given.
   std::vector<std::string> query_names;
+  bool lights = false;                  ///< Lighting output is armed from the start.
+  std::vector<std::string> lights_out;  ///< Targets of lighting output.
 };
 
 /// Options of takes.

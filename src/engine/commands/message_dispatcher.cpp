@@ -47,6 +47,7 @@ constexpr SpecialAddress kSpecialAddresses[] = {
     {"/list/tendons", "body", "Answers with the body and the names of its tendons."},
     {"/list/behaviors", "body", "Answers with the body and the names of its behaviors, in execution order."},
     {"/list/gears", "", "Answers with the names of the gears."},
+    {"/list/fixtures", "", "Answers with the names of the lighting fixtures."},
     {"/list/groups", "", "Answers with the names of the group behaviors."},
     {"/list/shapes", "", "Answers with the names of the shapes."},
     {"/list/scenes", "", "Answers with the names of the scenes in the folder of the current scene."},

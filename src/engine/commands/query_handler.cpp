@@ -9,8 +9,10 @@
 
 #include "base/text.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/shapes/shape_list.h"
+#include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 
 namespace limber::engine {
@@ -31,7 +33,8 @@ Outcome answered(Message answer, std::size_t query_args) {
 }  // namespace
 
 Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) const {
-  const bool of_world = kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups";
+  const bool of_world =
+      kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups" || kind == "fixtures";
   if (!of_world) return list_of_body(kind, args);
   if (!args.empty()) return Outcome::rejected("takes no arguments");
   Message answer{fmt::format("/list/{}", kind), {}};
@@ -41,6 +44,7 @@ Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) con
   if (kind == "bodies") add_names(world_.bodies());
   if (kind == "shapes") add_names(world_.shapes().list());
   if (kind == "gears") add_names(world_.gears().list());
+  if (kind == "fixtures") add_names(world_.visuals().fixtures().list());
   if (kind == "groups") add_names(world_.behaviors().groups());
   return answered(std::move(answer), 0);
 }

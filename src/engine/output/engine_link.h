@@ -12,6 +12,7 @@
 #include "engine/commands/command_queue.h"
 #include "engine/edits/change_log.h"
 #include "engine/output/health.h"
+#include "engine/output/lighting_status.h"
 #include "engine/output/message_log.h"
 #include "engine/output/snapshot.h"
 #include "engine/output/value_snapshot.h"
@@ -41,9 +42,10 @@ struct EngineLink {
   /// OSC ports and targets of the scene. Null: no scene has run; empty lists: not specified.
   Latest<OscConfig> osc_config;
   Counters counters;
-  Health health;           ///< Things dropped, reduced, disabled or lost.
-  MessageLog message_log;  ///< Messages received and sent by OSC and OSCQuery, for monitors.
-  ChangeLog changes;       ///< Recent changes of values and their sources, for monitors.
+  Health health;            ///< Things dropped, reduced, disabled or lost.
+  MessageLog message_log;   ///< Messages received and sent by OSC and OSCQuery, for monitors.
+  LightingStatus lighting;  ///< Of the output to lights.
+  ChangeLog changes;        ///< Recent changes of values and their sources, for monitors.
 
   /// Called after a push to `output_queue`, `osc_config` or `value_snapshots`, for example to signal an eventfd. Set
   /// before start.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/fixtures/fixture_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
@@ -46,7 +47,7 @@ void Publisher::update_body_list() {
   body_list_ = std::move(body_list);
 }
 
-void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& times) {
+void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& times, bool replayed) {
   if (body_list_ == nullptr || structure_version_ != world_.store().structure_version()) {
     update_body_list();
     render_scene_ = std::make_shared<const RenderScene>(world_);
@@ -73,6 +74,8 @@ void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& time
     snapshot->render_scene = render_scene_;
     snapshot->visuals_version = version;
   }
+  snapshot->dmx = world_.visuals().fixtures().frame();
+  snapshot->replayed = replayed;
   snapshot->overlay.clear();
   if (world_.visuals().overlay().on()) world_.visuals().overlay().collect(snapshot->overlay);
   out_.publish(snapshot);

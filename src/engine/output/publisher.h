@@ -14,7 +14,8 @@ class Publisher {
   Publisher(sim::World& world, Latest<Snapshot>& out) : world_(world), out_(out) {}
 
   /// Publishes a snapshot of the current state. `speed_factor`: measured simulated seconds per real second.
-  void publish(bool paused, double speed_factor, const PhaseTimes& times = {});
+  /// `replayed`: a take is replayed.
+  void publish(bool paused, double speed_factor, const PhaseTimes& times = {}, bool replayed = false);
 
  private:
   void update_body_list();

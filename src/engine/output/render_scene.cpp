@@ -9,6 +9,7 @@
 
 #include "base/color.h"
 #include "engine/output/snapshot.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/tendons/tendon_list.h"
 #include "sim/visuals/visuals.h"
@@ -116,6 +117,8 @@ RenderScene::RenderScene(const sim::World& world) {
     }
   }
   add_tendons(world, tint);
+  for (const auto& fixture : world.visuals().fixtures().list())
+    beams.push_back({view.slots[fixture->id().slot].transient});
 }
 
 // `offset`: index of the first radius in Snapshot::visuals
@@ -171,6 +174,13 @@ Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance) {
   const Vec3 hsb = vec3_at(v);
   // the default is exactly white
   return {hsb == Vec3(0, 0, 1) ? Vec3(1) : rgb_of(hsb), v[kTintWidth - 1]};
+}
+
+Beam beam_of(const Snapshot& snapshot, const RenderBeam& beam) {
+  static const PropertyTable& table = sim::Fixture::table();
+  const double* const v = snapshot.transient.data() + beam.offset;
+  return {vec3_at(v + at(table, "lens")), vec3_at(v + at(table, "direction")), vec3_at(v + at(table, "light")),
+          v[at(table, "beam_angle")] * kPi / 180};
 }
 
 double radius_of(const Snapshot& snapshot, const RenderTendon& tendon) { return snapshot.visuals[tendon.radius]; }

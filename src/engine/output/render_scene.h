@@ -44,6 +44,11 @@ struct RenderTendon {
   std::uint32_t radius = 0;          ///< For radius_of().
 };
 
+/// The beam of a lighting fixture, drawn as a translucent cone.
+struct RenderBeam {
+  std::uint32_t offset = 0;  ///< Index of the fixture's block in Snapshot::transient; for beam_of().
+};
+
 /// Rebuilt only when bodies or shapes are added, removed or changed; shared by the snapshots in between.
 struct RenderScene {
   explicit RenderScene(const sim::World& world);  ///< [sim]
@@ -51,6 +56,7 @@ struct RenderScene {
   std::vector<RenderShape> shapes;
   std::vector<RenderInstance> instances;
   std::vector<RenderTendon> tendons;
+  std::vector<RenderBeam> beams;
 
   /// Copies the persistent values of visuals, camera, look, materials, tints and radii of tendons to Snapshot::visuals.
   /// Allocates only if they have grown. [sim]
@@ -87,6 +93,15 @@ Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance);
 
 /// Radius of a tendon, m.
 double radius_of(const Snapshot& snapshot, const RenderTendon& tendon);
+
+/// A beam of light.
+struct Beam {
+  Vec3 lens{0};             ///< Where it begins, world, m.
+  Vec3 direction{0, 0, 1};  ///< Unit vector, world.
+  Vec3 light{0};            ///< Red, green, blue.
+  double angle = 0;         ///< Full angle of its cone, rad.
+};
+Beam beam_of(const Snapshot& snapshot, const RenderBeam& beam);
 
 /// The camera. The view matrix is T(position)·Rx·Ry·Rz, with rotations in degrees.
 struct CameraSettings {

@@ -63,6 +63,15 @@ struct TendonDiff {
   bool empty() const { return in_old_spec && same_points && changed == 0; }
 };
 
+/// Changes of a fixture. One with another profile or other targets is rebuilt.
+struct FixtureDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool same_build = true;     ///< It has the same profile and targets.
+  std::uint64_t changed = 0;  ///< Properties to set.
+
+  bool empty() const { return in_old_spec && same_build && changed == 0; }
+};
+
 struct SceneDiff {
   std::uint64_t world = 0;                                    ///< Properties of the world to set.
   std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
@@ -84,7 +93,9 @@ struct SceneDiff {
   std::vector<TendonDiff> tendons;          ///< For each new tendon.
   /// Removed tendons, by the names of their bodies and their own.
   std::vector<std::pair<std::string, std::string>> removed_tendons;
-  bool order_changed = false;  ///< The order of the behaviors differs.
+  std::vector<FixtureDiff> fixtures;          ///< For each new fixture.
+  std::vector<std::string> removed_fixtures;  ///< Removed fixtures.
+  bool order_changed = false;                 ///< The order of the behaviors differs.
 
   bool empty() const;
 };

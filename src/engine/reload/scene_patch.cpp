@@ -8,6 +8,7 @@
 
 #include "base/check.h"
 #include "engine/reload/behavior_patch.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
@@ -110,6 +111,7 @@ class PatchApplier {
     apply_bodies(objects);
     apply_gears();
     apply_tendons();
+    apply_fixtures();
     apply_behaviors(patch_, bodies_, saved_behaviors_);
     for (const std::size_t removed : patch_.diff.removed_shapes) {
       if (sim::Shape* const shape = find_alive<sim::Shape>(patch_.world, objects.shapes[removed]))
@@ -245,6 +247,36 @@ class PatchApplier {
       order.push_back(live);
     }
     tendons.move_to_front(order);
+  }
+
+  // The same for fixtures; one with another profile or other targets is made again. Removes all of these first, so that
+  // their channels are free.
+  void apply_fixtures() {
+    sim::FixtureList& fixtures = patch_.world.visuals().fixtures();
+    for (const std::string& name : patch_.diff.removed_fixtures) {
+      if (sim::Fixture* const removed = fixtures.find(name)) fixtures.remove(*removed);
+    }
+    const auto changed = [](const FixtureDescription& now, const sim::Fixture& live) {
+      return !(live.profile() == *now.profile) || live.targets() != now.targets;
+    };
+    for (const FixtureDescription& now : patch_.now.fixtures) {
+      sim::Fixture* const live = fixtures.find(now.name);
+      if (live != nullptr && changed(now, *live)) fixtures.remove(*live);
+    }
+    std::vector<sim::Fixture*> order;
+    for (std::size_t i = 0; i < patch_.now.fixtures.size(); i++) {
+      const FixtureDescription& now = patch_.now.fixtures[i];
+      const NodeId source = patch_.candidate.visuals().fixtures().list()[i]->id();
+      sim::Fixture* live = fixtures.find(now.name);
+      if (live == nullptr) {
+        live = &fixtures.add_described(now.name, now.profile, now.targets);
+        set_properties(source, live->id(), described_mask(sim::Fixture::table()));
+      } else {
+        set_properties(source, live->id(), patch_.diff.fixtures[i].changed);
+      }
+      order.push_back(live);
+    }
+    fixtures.move_to_front(order);
   }
 
   static bool same_points(const sim::Tendon& tendon, const std::vector<sim::Tendon::Point>& points) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
@@ -168,6 +169,9 @@ SceneSpec describe(const sim::World& world) {
       description.points.push_back({point.part->body().name(), point.part->name(), point.position});
     description.values = spec_values_of(world.store(), tendon->id());
   }
+  for (const auto& fixture : world.visuals().fixtures().list())
+    out.fixtures.push_back(
+        {fixture->name(), fixture->shared_profile(), fixture->targets(), spec_values_of(world.store(), fixture->id())});
   for (const sim::BehaviorGroup* group : world.behaviors().groups()) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
                           spec_values_of(world.store(), group->id())});

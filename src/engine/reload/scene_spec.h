@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/behavior/behavior_list.h"
+#include "sim/fixtures/fixture.h"
 #include "sim/sensors/sensor.h"
 #include "sim/world/joint.h"
 #include "sim/world/world.h"
@@ -102,6 +103,12 @@ struct TendonDescription {
   std::vector<Point> points;
   SpecValues values;
 };
+struct FixtureDescription {
+  std::string name;
+  std::shared_ptr<const sim::FixtureProfile> profile;
+  std::vector<sim::FixtureTarget> targets;
+  SpecValues values;
+};
 struct BodyDescription {
   std::string name;
   SpecValues values;
@@ -123,6 +130,7 @@ struct SceneSpec {
   std::vector<BodyDescription> bodies;
   std::vector<GearDescription> gears;
   std::vector<TendonDescription> tendons;
+  std::vector<FixtureDescription> fixtures;
   std::vector<GroupDescription> groups;
   std::vector<std::string> behavior_order;  ///< BehaviorOrder::keys()
 };

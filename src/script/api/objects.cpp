@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "script/api/script_context.h"
 #include "sim/behavior/behavior_list.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/bounds.h"
@@ -14,6 +15,7 @@
 #include "sim/state/body_trees.h"
 #include "sim/state/state_hash.h"
 #include "sim/tendons/tendon_list.h"
+#include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
 #include "sim/world/motor.h"
@@ -23,7 +25,19 @@ namespace limber::script::calls {
 
 namespace {
 
-enum Kind : std::int32_t { bodies, parts, joints, motors, shapes, behaviors, groups, gears, sensors, tendons };
+enum Kind : std::int32_t {
+  bodies,
+  parts,
+  joints,
+  motors,
+  shapes,
+  behaviors,
+  groups,
+  gears,
+  sensors,
+  tendons,
+  fixtures
+};
 
 // The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
 template <class T>
@@ -44,6 +58,7 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   if (kind == bodies) return item(c, c.world->bodies(), i);
   if (kind == shapes) return item(c, c.world->shapes().list(), i);
   if (kind == gears) return item(c, c.world->gears().list(), i);
+  if (kind == fixtures) return item(c, c.world->visuals().fixtures().list(), i);
   if (kind == groups) {
     const std::vector<sim::BehaviorGroup*> all = c.world->behaviors().groups();
     return item<sim::BehaviorGroup>(c, all, i);
@@ -172,6 +187,10 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
     return id_or_error(context, world.shapes().find(wanted), world.shapes().list(), "shape", "there is", wanted);
   if (kind == gears)
     return id_or_error(context, world.gears().find(wanted), world.gears().list(), "gear", "there is", wanted);
+  if (kind == fixtures) {
+    const sim::FixtureList& all = world.visuals().fixtures();
+    return id_or_error(context, all.find(wanted), all.list(), "fixture", "there is", wanted);
+  }
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
@@ -188,7 +207,7 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
   // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors, tendons; then shapes, gears,
-  // groups; removed objects last.
+  // groups, fixtures; removed objects last.
   const ScriptContext& context = context_of(c);
   const sim::World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -223,6 +242,9 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   if (const sim::BehaviorGroup* group = group_of(context, id)) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
     return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
+  }
+  if (const sim::Fixture* fixture = object_of<sim::Fixture>(context, id)) {
+    return kShapes * 1.375 + static_cast<double>(index_in(world.visuals().fixtures().list(), fixture));
   }
   if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) {
     return kShapes * 1.125 + static_cast<double>(index_in(world.gears().list(), gear));

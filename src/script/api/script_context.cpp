@@ -6,6 +6,7 @@
 #include "properties/values_hash.h"
 #include "script/behaviors/behavior_scripts.h"
 #include "script/vm/guard.h"
+#include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
 #include "sim/shapes/shape.h"
 #include "sim/visuals/visuals.h"
@@ -122,7 +123,8 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &sim::Camera::table()) return "visuals.camera";
   if (table == &sim::Appearance::table()) return "visuals.look";
   const std::string& name = store.name(id);
-  if (table == &sim::Body::table() || table == &sim::Shape::table() || table == &sim::Gear::table())
+  if (table == &sim::Body::table() || table == &sim::Shape::table() || table == &sim::Gear::table() ||
+      table == &sim::Fixture::table())
     return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
   const NodeId owner = store.parent(store.parent(id));

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
@@ -156,11 +157,11 @@ AnnotatedPage& open_page(std::vector<AnnotatedPage>& pages, BlockReader& reader)
 }  // namespace
 
 const PropertyTable& annotated_class(std::string_view name) {
-  const std::array<const PropertyTable*, 15> classes = {
+  const std::array<const PropertyTable*, 16> classes = {
       &sim::World::table(),      &sim::Body::table(),  &sim::Part::table(),    &sim::Joint::table(),
       &sim::Motor::table(),      &sim::Shape::table(), &sim::Visuals::table(), &sim::Camera::table(),
       &sim::Appearance::table(), &sim::Gear::table(),  &sim::imu_table(),      &sim::range_finder_table(),
-      &sim::zone_table(),        &sim::touch_table(),  &sim::Tendon::table()};
+      &sim::zone_table(),        &sim::touch_table(),  &sim::Tendon::table(),  &sim::Fixture::table()};
   for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }

@@ -11,7 +11,7 @@
 namespace limber::script {
 
 std::span<const std::string_view> prelude_order() {
-  static constexpr std::array<std::string_view, 34> kOrder{"core.lua",
+  static constexpr std::array<std::string_view, 35> kOrder{"core.lua",
                                                            "library.lua",
                                                            "syntax.lua",
                                                            "compiled.lua",
@@ -27,6 +27,7 @@ std::span<const std::string_view> prelude_order() {
                                                            "sim.lua",
                                                            "sensors.lua",
                                                            "tendons.lua",
+                                                           "fixtures.lua",
                                                            "visuals.lua",
                                                            "callbacks.lua",
                                                            "osc.lua",

@@ -7,6 +7,7 @@
 #include "properties/values_hash.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/bullet.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
@@ -76,6 +77,7 @@ std::uint64_t World::state_hash() const {
   NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
   for (const auto& shape : shapes_->list()) numbers.add_word(persistent_hash(store_, shape->id()));
   for (const auto& gear : gears().list()) numbers.add_word(persistent_hash(store_, gear->id()));
+  for (const auto& fixture : visuals_->fixtures().list()) numbers.add_word(node_hash(store_, fixture->id()));
   numbers.add(time(), static_cast<double>(state_.tick), static_cast<double>(seed()));
   std::uint64_t hash = numbers.value();
   for (const auto& body : bodies()) hash = body_hash(*body, hash);

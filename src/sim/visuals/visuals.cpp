@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "properties/values_hash.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/world/world.h"
 
 namespace limber::sim {
@@ -159,7 +160,10 @@ Visuals::Visuals(World& world)
       camera_(store_, id_),
       appearance_(store_, id_),
       camera_moves_(world),
-      overlay_(world) {}
+      overlay_(world),
+      fixtures_(std::make_unique<FixtureList>(world)) {}
+
+Visuals::~Visuals() = default;
 
 void Visuals::clear() {
   for (const auto& [id, properties] : {std::pair{id_, table().properties()},
@@ -170,6 +174,7 @@ void Visuals::clear() {
     }
   }
   camera_moves_.stop();
+  fixtures_->clear();
 }
 
 }  // namespace limber::sim

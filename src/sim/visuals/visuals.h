@@ -1,9 +1,10 @@
-// Visuals: the view besides the shapes' materials: background, camera and its animations, look, debug overlay;
-// rendering is elsewhere. [sim]
+// Visuals: the view besides the shapes' materials: background, camera and its animations, look, debug overlay, and the
+// lighting fixtures, whose beams are drawn; rendering is elsewhere. [sim]
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "base/vec.h"
@@ -13,6 +14,8 @@
 #include "sim/visuals/overlay.h"
 
 namespace limber::sim {
+
+class FixtureList;
 
 /// The camera, with the conventions of ofxDabPhysics: the view matrix is T(position)·Rx·Ry·Rz. `eye` and `target` are
 /// derived from it.
@@ -61,13 +64,17 @@ class Visuals {
   static const PropertyTable& table();
 
   explicit Visuals(World& world);
+  ~Visuals();
+  Visuals(const Visuals&) = delete;
+  Visuals& operator=(const Visuals&) = delete;
   NodeId id() const { return id_; }
   Camera& camera() { return camera_; }
   const Camera& camera() const { return camera_; }
   const Appearance& appearance() const { return appearance_; }
   CameraMoves& camera_moves() { return camera_moves_; }
   Overlay& overlay() { return overlay_; }
-  /// Resets all properties to their defaults, and ends the animations.
+  FixtureList& fixtures() const { return *fixtures_; }
+  /// Resets all properties to their defaults, ends the animations, and removes the fixtures.
   void clear();
 
  private:
@@ -77,6 +84,7 @@ class Visuals {
   Appearance appearance_;
   CameraMoves camera_moves_;
   Overlay overlay_;
+  std::unique_ptr<FixtureList> fixtures_;
 };
 
 }  // namespace limber::sim

@@ -7,6 +7,7 @@
 #include "base/system/clock.h"
 #include "sim/behavior/behavior_list.h"
 #include "sim/bullet/island_world.h"
+#include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/sensors/readouts.h"
 #include "sim/shapes/shape_list.h"
@@ -243,6 +244,7 @@ void World::flush() {
   apply_changes(*this);
   part_inputs_.kinematics.place();
   update_moved_joints(*this);
+  visuals_->fixtures().step(0);
 }
 
 TickTimes World::step() {
@@ -278,6 +280,7 @@ TickTimes World::step() {
   gears().warn_slipping();
   stability_.end_tick();
   visuals_->camera_moves().step();
+  visuals_->fixtures().step(timestep());
   return {flush_time - start_time, physics_time - flush_time, readout_time - physics_time,
           system::clock_seconds() - readout_time};
 }

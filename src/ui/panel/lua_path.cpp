@@ -45,6 +45,7 @@ std::string object_text(const std::vector<std::string_view>& names) {
   if (names.empty()) return {};
   if (names[0] == "physics") return physics_text(names);
   if (names[0] == "visuals") return visuals_text(names);
+  if (names[0] == "lighting" && names.size() == 3) return fmt::format("sim:fixture({})", lua_text(names[2]));
   return names[0] == "scene" && names.size() == 1 ? "params" : "";
 }
 

@@ -1,5 +1,5 @@
 // The passes of a frame: shadow map, ground map, mirrored scene, floor, opaque shapes, background, transparent shapes,
-// debug overlay.
+// beams of light, debug overlay.
 #include "ui/render/renderer.h"
 
 #include <epoxy/gl.h>
@@ -459,6 +459,7 @@ Result<void> Renderer::draw_into(RenderTarget& target, const engine::Snapshot& p
   draw_batches(draw_list_.transparent(), Pass::color);
   glDisable(GL_BLEND);
   glDepthMask(GL_TRUE);
+  beams_.draw(previous, current, mix, shaders_);
   draw_overlay(previous, current, mix, target);
 
   target.resolve(shaders_);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "ui/render/beams.h"
 #include "ui/render/camera.h"
 #include "ui/render/draw_list.h"
 #include "ui/render/gl.h"
@@ -120,6 +121,7 @@ class Renderer {
   GlVertexArray no_attributes_;  // without attributes, for shaders that generate their vertices
   DepthMap shadow_map_, ground_map_;
   RenderTarget target_, output_;
+  Beams beams_;
   OverlayLines overlay_;
   GlBuffer overlay_buffer_;
   GlVertexArray overlay_array_;

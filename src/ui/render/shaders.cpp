@@ -31,12 +31,13 @@ struct ProgramFiles {
   const char* defines = "";
   bool GlApiInfo::*replaced_feature = nullptr;  // only built if the API lacks this feature
 };
-const std::array<ProgramFiles, 10> kPrograms = {
+const std::array<ProgramFiles, 11> kPrograms = {
     {{"shape", "shape.vert", "shape.frag"},
      {"colored", "shape.vert", "shape.frag", "#define COLORED\n"},
      {"depth", "shape.vert", "depth.frag"},
      {"floor", "floor.vert", "floor.frag"},
      {"sky", "sky.vert", "sky.frag"},
+     {"beam", "beam.vert", "beam.frag"},
      {"overlay", "overlay.vert", "overlay.frag"},
      {"mirrored", "shape.vert", "shape.frag", "#define MIRRORED\n", &GlApiInfo::clip_distance},
      {"mirrored_colored", "shape.vert", "shape.frag", "#define MIRRORED\n#define COLORED\n", &GlApiInfo::clip_distance},

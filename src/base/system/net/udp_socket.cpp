@@ -32,6 +32,14 @@ void allow_broadcast(int fd) {
   setsockopt(fd, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
 }
 
+void send_multicast_from(int fd, std::uint32_t ip) {
+  const unsigned char routers = 8;
+  setsockopt(fd, IPPROTO_IP, IP_MULTICAST_TTL, &routers, sizeof routers);
+  in_addr address{};
+  address.s_addr = htonl(ip);
+  if (ip != 0) setsockopt(fd, IPPROTO_IP, IP_MULTICAST_IF, &address, sizeof address);
+}
+
 bool may_report_earlier_datagram(int error) {
   return error == ECONNREFUSED || error == EHOSTUNREACH || error == ENETUNREACH;
 }

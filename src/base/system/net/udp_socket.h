@@ -28,6 +28,8 @@ Result<UdpSocket> open_udp(const Endpoint& at);
 int set_receive_buffer(int fd, int bytes);
 void set_send_buffer(int fd, int bytes);
 void allow_broadcast(int fd);
+/// Sends multicast datagrams from the interface with this address (0: the system chooses), over up to 8 routers.
+void send_multicast_from(int fd, std::uint32_t ip);
 /// Returns the largest receive buffer that the system grants, in bytes; nullopt if unknown.
 std::optional<long> max_receive_buffer();
 

@@ -1,0 +1,148 @@
+// LightingOutput: sockets and the loop of the thread.
+#include "net/lighting/output.h"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <span>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/log/log.h"
+#include "base/system/thread.h"
+#include "base/system/wait.h"
+
+namespace limber::lighting {
+
+namespace {
+
+constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr std::int64_t kIdleInterval = kSecond / 20;  // between two looks at `armed`
+
+std::int64_t now_nanoseconds() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+Cid random_cid() {
+  std::random_device device;
+  Cid cid;
+  for (std::uint8_t& each : cid) each = static_cast<std::uint8_t>(device());
+  cid[6] = static_cast<std::uint8_t>((cid[6] & 0x0fU) | 0x40U);  // a random UUID
+  cid[8] = static_cast<std::uint8_t>((cid[8] & 0x3fU) | 0x80U);
+  return cid;
+}
+
+}  // namespace
+
+LightingOutput::LightingOutput(engine::EngineLink& link, LightingOptions options)
+    : link_(link), options_(std::move(options)), latch_(options_.lights, options_.in_real_time) {
+  const Cid cid = random_cid();
+  for (const LightTarget& target : options_.targets) {
+    const std::size_t index = outputs_.size();
+    outputs_.push_back(std::make_unique<Output>(
+        target, cid,
+        [this, index](const system::Endpoint& to, const std::string& packet) { send(*outputs_[index], to, packet); }));
+  }
+}
+
+LightingOutput::~LightingOutput() { stop(); }
+
+std::vector<std::string> LightingOutput::status_lines() const {
+  std::vector<std::string> lines;
+  for (const LightTarget& target : options_.targets) lines.push_back("lights " + target_text(target));
+  return lines;
+}
+
+void LightingOutput::start() {
+  if (outputs_.empty() || thread_.joinable()) return;
+  std::string text;
+  for (const std::string& line : status_lines()) text += fmt::format("{}{}", text.empty() ? "" : "\n", line);
+  link_.lighting.set_text(text);
+  link_.lighting.set(engine::LightingStatus::State::off);
+  for (const std::unique_ptr<Output>& output : outputs_) open(*output, now_nanoseconds());
+  stop_ = false;
+  thread_ = std::thread([this] { run(); });
+}
+
+void LightingOutput::stop() {
+  if (!thread_.joinable()) return;
+  stop_ = true;
+  wake_.notify();
+  thread_.join();
+  link_.lighting.set(engine::LightingStatus::State::no_output);
+}
+
+void LightingOutput::open(Output& output, std::int64_t now) {
+  if (output.socket.is_open() || now < output.retry_at) return;
+  output.retry_at = now + kSecond;
+  const LightTarget& target = output.stream.target();
+  Result<system::UdpSocket> opened = system::open_udp({target.interface, 0});
+  if (!opened) {
+    if (std::exchange(output.reported_error, -1) != -1)
+      log_warning("lights: {} can't be sent from {}: {}. Check interface=; retrying every second", target_text(target),
+                  system::endpoint_text({target.interface, 0}), opened.error());
+    return;
+  }
+  output.socket = std::move(*opened);
+  system::allow_broadcast(output.socket.fd());
+  system::send_multicast_from(output.socket.fd(), target.interface);
+}
+
+void LightingOutput::send(Output& output, const system::Endpoint& to, const std::string& packet) {
+  if (!output.socket.is_open()) return;
+  int error = system::send_datagram(output.socket.fd(), to, packet);
+  if (error != 0 && system::may_report_earlier_datagram(error))
+    error = system::send_datagram(output.socket.fd(), to, packet);
+  if (error == 0) {
+    link_.lighting.packets.fetch_add(1);
+    if (std::exchange(output.reported_error, 0) != 0)
+      log_info("lights: {} is sent again", target_text(output.stream.target()));
+    return;
+  }
+  if (std::exchange(output.reported_error, error) == error) return;
+  log_warning("lights: {} can't be reached: {}. Check the address and the network; the output continues",
+              target_text(output.stream.target()), std::generic_category().message(error));
+}
+
+std::int64_t LightingOutput::send_due(std::int64_t now) {
+  const std::shared_ptr<const engine::Snapshot> snapshot = link_.snapshots.read();
+  if (snapshot == nullptr) return now + kIdleInterval;
+  const sim::DmxFrame& frame = snapshot->dmx;
+  const bool may_send = latch_.update(frame.armed, snapshot->replayed, snapshot->tick);
+  using State = engine::LightingStatus::State;
+  link_.lighting.set(may_send ? State::sending : frame.armed ? State::blocked : State::off);
+  active_ = may_send;
+  if (!may_send) {
+    if (std::exchange(sends_, false)) {
+      for (const std::unique_ptr<Output>& output : outputs_) output->stream.end();
+    }
+    return now + kIdleInterval;
+  }
+  sends_ = true;
+  std::int64_t next = now + kSecond / 2;
+  for (const std::unique_ptr<Output>& output : outputs_) {
+    open(*output, now);
+    if (const std::optional<std::int64_t> due = output->stream.update(frame, now)) next = std::min(next, *due);
+  }
+  return next;
+}
+
+void LightingOutput::run() {
+  system::name_this_thread("limber-lights");
+  while (!stop_.load()) {
+    const std::int64_t now = now_nanoseconds();
+    const std::int64_t next = send_due(now);
+    system::PollEntry entry{.fd = wake_.fd()};
+    (void)system::wait_ready({&entry, 1},
+                             std::chrono::nanoseconds(std::max<std::int64_t>(0, next - now_nanoseconds())));
+    wake_.clear();
+  }
+  if (std::exchange(sends_, false)) {
+    for (const std::unique_ptr<Output>& output : outputs_) output->stream.end();
+  }
+}
+
+}  // namespace limber::lighting
