@@ -1,5 +1,5 @@
 // Beams of light: the side of a cone.
-layout(location = 0) in vec4 corner;  // position; w: brightness at this distance from the lens
+layout(location = 0) in vec4 corner;  // position; w: brightness at this distance from its origin
 layout(location = 1) in vec4 normal;
 layout(location = 2) in vec4 light;   // red, green, blue
 

@@ -49,6 +49,7 @@ for _, kind in ipairs { "force", "random_force", "random_rotation_target", "rand
   sim.bodies[1]:add_behavior(kind, "one_" .. kind)
 end
 sim:add_gear(joints[1], joints[2], 2)
+sim:add_fixture("the_first_spot_on_the_left_side", { profile = "moving_spot", targets = tip })
 sim.bodies[1]:add_tendon("cable", { points = { { "base", 0.2, 0, 0 }, { "tip" } } })
 )";
 

@@ -179,7 +179,7 @@ Tint tint_of(const Snapshot& snapshot, const RenderInstance& instance) {
 Beam beam_of(const Snapshot& snapshot, const RenderBeam& beam) {
   static const PropertyTable& table = sim::Fixture::table();
   const double* const v = snapshot.transient.data() + beam.offset;
-  return {vec3_at(v + at(table, "lens")), vec3_at(v + at(table, "direction")), vec3_at(v + at(table, "light")),
+  return {vec3_at(v + at(table, "origin")), vec3_at(v + at(table, "direction")), vec3_at(v + at(table, "light")),
           v[at(table, "beam_angle")] * kPi / 180};
 }
 

@@ -96,7 +96,7 @@ double radius_of(const Snapshot& snapshot, const RenderTendon& tendon);
 
 /// A beam of light.
 struct Beam {
-  Vec3 lens{0};             ///< Where it begins, world, m.
+  Vec3 origin{0};           ///< Where it begins, world, m.
   Vec3 direction{0, 0, 1};  ///< Unit vector, world.
   Vec3 light{0};            ///< Red, green, blue.
   double angle = 0;         ///< Full angle of its cone, rad.

@@ -280,10 +280,10 @@ bool SceneDiff::empty() const {
   const bool same_objects =
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
   const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
-  const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears,
-                                     removed_tendons, removed_fixtures);
+  const bool none_removed =
+      all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears, removed_tendons);
   return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears) &&
-         all_empty(tendons) && all_empty(fixtures) && std::ranges::all_of(behaviors, all_empty);
+         all_empty(tendons) && fixtures.empty() && std::ranges::all_of(behaviors, all_empty);
 }
 
 std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
@@ -385,11 +385,11 @@ void compare_fixtures(const SceneSpec& before, const SceneSpec& now, SceneDiff& 
     const FixtureDescription* const old_one = find_named(before.fixtures, fixture.name);
     const bool same_build =
         old_one != nullptr && *old_one->profile == *fixture.profile && old_one->targets == fixture.targets;
-    out.fixtures.push_back(
+    out.fixtures.list.push_back(
         {old_one != nullptr, same_build, mask_to_set(old_one == nullptr ? nullptr : &old_one->values, fixture.values)});
   }
   for (const FixtureDescription& old_one : before.fixtures) {
-    if (find_named(now.fixtures, old_one.name) == nullptr) out.removed_fixtures.push_back(old_one.name);
+    if (find_named(now.fixtures, old_one.name) == nullptr) out.fixtures.removed.push_back(old_one.name);
   }
 }
 

@@ -3,6 +3,7 @@
 // [any]
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -72,6 +73,15 @@ struct FixtureDiff {
   bool empty() const { return in_old_spec && same_build && changed == 0; }
 };
 
+struct FixtureDiffs {
+  std::vector<FixtureDiff> list;     ///< For each new fixture.
+  std::vector<std::string> removed;  ///< Removed fixtures.
+
+  bool empty() const {
+    return removed.empty() && std::ranges::all_of(list, [](const FixtureDiff& each) { return each.empty(); });
+  }
+};
+
 struct SceneDiff {
   std::uint64_t world = 0;                                    ///< Properties of the world to set.
   std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
@@ -93,9 +103,8 @@ struct SceneDiff {
   std::vector<TendonDiff> tendons;          ///< For each new tendon.
   /// Removed tendons, by the names of their bodies and their own.
   std::vector<std::pair<std::string, std::string>> removed_tendons;
-  std::vector<FixtureDiff> fixtures;          ///< For each new fixture.
-  std::vector<std::string> removed_fixtures;  ///< Removed fixtures.
-  bool order_changed = false;                 ///< The order of the behaviors differs.
+  FixtureDiffs fixtures;
+  bool order_changed = false;  ///< The order of the behaviors differs.
 
   bool empty() const;
 };

@@ -253,7 +253,7 @@ class PatchApplier {
   // their channels are free.
   void apply_fixtures() {
     sim::FixtureList& fixtures = patch_.world.visuals().fixtures();
-    for (const std::string& name : patch_.diff.removed_fixtures) {
+    for (const std::string& name : patch_.diff.fixtures.removed) {
       if (sim::Fixture* const removed = fixtures.find(name)) fixtures.remove(*removed);
     }
     const auto changed = [](const FixtureDescription& now, const sim::Fixture& live) {
@@ -272,7 +272,7 @@ class PatchApplier {
         live = &fixtures.add_described(now.name, now.profile, now.targets);
         set_properties(source, live->id(), described_mask(sim::Fixture::table()));
       } else {
-        set_properties(source, live->id(), patch_.diff.fixtures[i].changed);
+        set_properties(source, live->id(), patch_.diff.fixtures.list[i].changed);
       }
       order.push_back(live);
     }

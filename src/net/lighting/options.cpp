@@ -1,6 +1,7 @@
 // Options of the output to lights: parser and texts.
 #include "net/lighting/options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -22,42 +23,52 @@ std::optional<double> whole_number(std::string_view text, double low, double hig
   return number && *number >= low && *number <= high && std::floor(*number) == *number ? number : std::nullopt;
 }
 
-// Sets one setting. Returns an error text, or nothing.
-std::optional<std::string> set_setting(LightTarget& target, std::string_view key, std::string_view value) {
-  const auto invalid = [&](std::string_view expected) {
-    return fmt::format("{} must be {}, got '{}'", key, expected, printable(value));
-  };
+// Sets a setting that is a number. Returns the expected values, or nothing.
+std::optional<std::string> set_number(LightTarget& target, std::string_view key, std::string_view value) {
   if (key == "rate") {
     const std::optional<double> rate = parse_number(value);
-    if (!rate || !(*rate >= 1 && *rate <= 1000)) return invalid("a number from 1 to 1000");
+    if (!rate || !(*rate >= 1 && *rate <= 1000)) return "a number from 1 to 1000";
     target.rate = *rate;
   } else if (key == "priority") {
     const std::optional<double> priority = whole_number(value, 0, 200);
-    if (!priority) return invalid("a whole number from 0 to 200");
+    if (!priority) return "a whole number from 0 to 200";
     target.priority = static_cast<std::uint8_t>(*priority);
-  } else if (key == "sync") {
+  } else {
     const std::optional<double> universe = whole_number(value, 1, 63999);
-    if (!universe && value != "off") return invalid("a universe from 1 to 63999, or off");
+    if (!universe && value != "off") return "a universe from 1 to 63999, or off";
     target.sync = static_cast<std::uint16_t>(universe.value_or(0));
-  } else if (key == "interface") {
+  }
+  return std::nullopt;
+}
+
+// The same for a setting that is a text.
+std::optional<std::string> set_text(LightTarget& target, std::string_view key, std::string_view value) {
+  if (key == "interface") {
     const std::optional<std::uint32_t> ip = system::parse_ipv4(std::string(value));
-    if (!ip) return invalid("an IPv4 address of this machine");
+    if (!ip) return "an IPv4 address of this machine";
     target.interface = *ip;
   } else if (key == "name") {
-    if (const auto fault = name_error(value)) return fmt::format("name: {}", *fault);
-    if (value.size() >= kSourceNameBytes) return invalid("at most 63 bytes long");
+    if (name_error(value) || value.size() >= kSourceNameBytes) return "1 to 63 bytes of printable text";
     target.name = value;
-  } else if (key == "exit" || key == "panic") {
-    if (value != "blackout" && value != "hold") return invalid("blackout or hold");
-    (key == "exit" ? target.dark_at_end : target.dark_in_panic) = value == "blackout";
   } else {
-    static const std::vector<std::string_view> known = {"rate", "priority", "sync", "interface",
-                                                        "name", "exit",     "panic"};
-    return fmt::format("unknown setting '{}'{}", printable(key), name_hint(key, known));
+    if (value != "blackout" && value != "hold") return "blackout or hold";
+    (key == "exit" ? target.dark_at_end : target.dark_in_panic) = value == "blackout";
   }
+  return std::nullopt;
+}
+
+// Sets one setting. Returns an error text, or nothing.
+std::optional<std::string> set_setting(LightTarget& target, std::string_view key, std::string_view value) {
+  static const std::vector<std::string_view> numbers = {"rate", "priority", "sync"};
+  static const std::vector<std::string_view> known = {"rate", "priority", "sync", "interface", "name", "exit", "panic"};
+  if (std::ranges::find(known, key) == known.end())
+    return fmt::format("unknown setting '{}'{}", printable(key), name_hint(key, known));
   const bool of_sacn = key == "priority" || key == "sync" || key == "name";
   if (of_sacn && target.protocol != Protocol::sacn) return fmt::format("{} is a setting of sacn only", key);
-  return std::nullopt;
+  const bool is_number = std::ranges::find(numbers, key) != numbers.end();
+  const std::optional<std::string> expected = is_number ? set_number(target, key, value) : set_text(target, key, value);
+  if (!expected) return std::nullopt;
+  return fmt::format("{} must be {}, got '{}'", key, *expected, printable(value));
 }
 
 // Sets protocol and address. Returns an error text, or nothing.

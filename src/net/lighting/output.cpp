@@ -61,7 +61,6 @@ void LightingOutput::start() {
   std::string text;
   for (const std::string& line : status_lines()) text += fmt::format("{}{}", text.empty() ? "" : "\n", line);
   link_.lighting.set_text(text);
-  link_.lighting.set(engine::LightingStatus::State::off);
   for (const std::unique_ptr<Output>& output : outputs_) open(*output, now_nanoseconds());
   stop_ = false;
   thread_ = std::thread([this] { run(); });

@@ -17,7 +17,7 @@
 namespace limber::lighting {
 
 /// Whether values are sent. `armed` of a frame alone is not enough: a take that is replayed, or a rewind to an earlier
-/// moment, must not start lights. Live, somebody has to arm while the show plays. [one thread]
+/// moment, must not start lights. Live, a controller has to arm the output while the show plays. [one thread]
 class ArmLatch {
  public:
   ArmLatch(bool lights, bool in_real_time) : lights_(lights), in_real_time_(in_real_time) {}

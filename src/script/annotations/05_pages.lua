@@ -40,7 +40,11 @@
 ---A tendon pulls the parts that it goes through. Its tension is a property that can be played, for tentacles, puppets and
 ---tensegrities. [Tendons](../../howto/tendons.md) shows how to use them.
 
----@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, tendons, behaviors and gears.
+---@page fixtures Lighting fixtures: moving heads, lamps and their colors.
+---A fixture aims at parts and points within the limits of its motors, and its values are sent to the lights.
+---[Lighting](../../howto/lighting.md) shows how to use them.
+
+---@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, tendons, behaviors, gears and fixtures.
 ---A list such as `body.parts` has numbers from 1 to `#body.parts`. Called like a function, with or without a pattern, it
 ---gives the objects one after the other: `for part in body:parts("leg*") do … end`. A pattern has `*` (any text), `?` (one
 ---character), `[1-3]`, `[!a]` and `{left,right}`. Instead of a pattern, it also accepts a list of names and objects.

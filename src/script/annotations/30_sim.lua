@@ -7,6 +7,7 @@
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
+---@field fixtures fixture_list # read-only. All lighting fixtures, in the order of their creation; call it to iterate over those that match a pattern.
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@properties sim
 ---@error sim.gravty = vec3() --> sim has no property 'gravty'; did you mean 'gravity'?

@@ -42,6 +42,13 @@ bool frames(HotkeyAction action) {
   return action == HotkeyAction::frame_selection || action == HotkeyAction::frame_all;
 }
 
+// Returns the property that an action toggles, or null.
+const char* toggled_path(HotkeyAction action) {
+  if (action == HotkeyAction::toggle_overlay) return "/visuals/look/overlay";
+  if (action == HotkeyAction::toggle_lights) return "/lighting/armed";
+  return action == HotkeyAction::toggle_blackout ? "/lighting/blackout" : nullptr;
+}
+
 // Performs the hotkey actions that only need the context.
 void perform_in_context(HotkeyAction action, GuiContext& context) {
   switch (action) {
@@ -75,10 +82,8 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
     case HotkeyAction::redo:
       context.redo();
       break;
-    case HotkeyAction::toggle_overlay:
-      context.toggle_overlay();
-      break;
     default:
+      if (const char* const path = toggled_path(action)) context.toggle(path);
       break;
   }
 }

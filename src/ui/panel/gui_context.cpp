@@ -58,10 +58,7 @@ void GuiContext::undo_or_redo(const char* action, const char* description_path, 
   send(action);  // even if the snapshot has nothing to undo: it may be older than the last edit
 }
 
-void GuiContext::toggle_overlay() {
-  constexpr const char* kAddress = "/visuals/look/overlay";
-  send(kAddress, {Arg::of(number(kAddress) == 0 ? 1.0 : 0.0)});
-}
+void GuiContext::toggle(const char* path) { send(path, {Arg::of(number(path) == 0 ? 1.0 : 0.0)}); }
 
 void GuiContext::undo() { undo_or_redo("/edit/undo", "/edit/undo_of", "Nothing to undo"); }
 void GuiContext::redo() { undo_or_redo("/edit/redo", "/edit/redo_of", "Nothing to redo"); }

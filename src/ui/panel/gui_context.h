@@ -118,8 +118,8 @@ class GuiContext {
 
   /// Selects the object with this address and reveals it in the tree.
   void select(std::string path);
-  /// Toggles the debug overlay.
-  void toggle_overlay();
+  /// Toggles a property that is true or false, by address.
+  void toggle(const char* path);
   /// Recalls a preset by its number from 1, with the configured morph time.
   void recall(double number);
 

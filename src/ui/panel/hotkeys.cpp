@@ -44,6 +44,8 @@ constexpr std::array kHotkeys = {
     Hotkey{{GuiKey::f1, {}}, A::toggle_panel, "hide", "Hide the panel", true},
     Hotkey{{GuiKey::f2, {}}, A::toggle_help, "help", "Show this help", true},
     Hotkey{{GuiKey::f3, {}}, A::toggle_overlay, "overlay", "Show joints, contacts, forces and targets", true},
+    Hotkey{{GuiKey::l, kCtrl}, A::toggle_lights, "lights", "Arm or disarm the output to lights", true, 1, true},
+    Hotkey{{GuiKey::b, kCtrl}, A::toggle_blackout, "blackout", "Blackout of all lighting fixtures", true, 1, true},
     Hotkey{{GuiKey::f10, {}}, A::toggle_output_window, "output", "Open or close the output window", true},
     Hotkey{{GuiKey::f11, {}},
            A::toggle_full_screen,

@@ -30,6 +30,8 @@ enum class HotkeyAction : std::uint8_t {
   increase_text_size,
   decrease_text_size,
   toggle_overlay,
+  toggle_lights,
+  toggle_blackout,
   move_behavior_earlier,
   move_behavior_later,
   toggle_output_window,

@@ -1,4 +1,4 @@
-// Beams: cones with a brightness that decreases with the distance from the lens.
+// Beams: cones with a brightness that decreases with the distance from its origin.
 #include "ui/render/beams.h"
 
 #include <epoxy/gl.h>
@@ -15,9 +15,9 @@ namespace limber::render {
 namespace {
 
 constexpr int kBeamSides = 40;
-constexpr double kLensRadius = 0.04;  // m
+constexpr double kBeamStartRadius = 0.04;  // m
 constexpr double kMinBeamLight = 1e-3;
-// Distances from the lens, m, and the brightness there.
+// Distances from its origin, m, and the brightness there.
 struct BeamRing {
   double distance, brightness;
 };
@@ -25,7 +25,7 @@ constexpr std::array<BeamRing, 6> kBeamRings = {{{0, 0.5}, {0.5, 0.4}, {2, 0.24}
 
 engine::Beam interpolate_beam(const engine::Beam& previous, const engine::Beam& current, double mix) {
   engine::Beam beam;
-  beam.lens = glm::mix(previous.lens, current.lens, mix);
+  beam.origin = glm::mix(previous.origin, current.origin, mix);
   const Vec3 direction = normalized(glm::mix(previous.direction, current.direction, mix));
   beam.direction = direction == Vec3(0) ? current.direction : direction;
   beam.light = glm::mix(previous.light, current.light, mix);
@@ -42,7 +42,7 @@ void set_vector(float* to, const Vec3& v, double last) {
 
 void add_beam(const engine::Beam& beam, std::vector<BeamVertex>& triangles) {
   if (std::max({beam.light.x, beam.light.y, beam.light.z}) < kMinBeamLight) return;
-  if (!is_finite(beam.lens) || !is_finite(beam.direction)) return;
+  if (!is_finite(beam.origin) || !is_finite(beam.direction)) return;
   const Vec3 any = std::abs(beam.direction.z) < 0.9 ? Vec3(0, 0, 1) : Vec3(1, 0, 0);
   const Vec3 side = glm::normalize(glm::cross(beam.direction, any));
   const Vec3 up = glm::cross(beam.direction, side);
@@ -53,7 +53,8 @@ void add_beam(const engine::Beam& beam, std::vector<BeamVertex>& triangles) {
     const double angle = 2 * kPi * i / kBeamSides;
     const Vec3 out = side * std::cos(angle) + up * std::sin(angle);
     BeamVertex v{};
-    set_vector(v.corner, beam.lens + beam.direction * ring.distance + out * (kLensRadius + slope * ring.distance),
+    set_vector(v.corner,
+               beam.origin + beam.direction * ring.distance + out * (kBeamStartRadius + slope * ring.distance),
                ring.brightness);
     set_vector(v.normal, glm::normalize(out - beam.direction * slope), 0);
     set_vector(v.light, light, 0);

@@ -11,7 +11,7 @@ namespace limber::render {
 
 /// A corner of a cone, in the layout of shaders/beam.vert.
 struct BeamVertex {
-  float corner[4];  ///< Position, and the brightness at this distance from the lens.
+  float corner[4];  ///< Position, and the brightness at this distance from its origin.
   float normal[4];
   float light[4];  ///< Linear.
 };
