@@ -2,7 +2,8 @@
 
 ---@page fixtures
 
----Adds a lighting fixture. Its values are sent to the lights only while the output is armed.
+---Adds a lighting fixture. Without an `address` it gets the first channels of its universe that are free. Its values
+---are sent to the lights only while the output is armed.
 ---@param name string # A name of your choice, unique among the fixtures.
 ---@param opts fixture_opts # `profile`, and properties such as `position` and `dimmer`.
 ---@return fixture
@@ -39,8 +40,6 @@ function fixture_:remove() end
 
 ---@class fixture_opts
 ---@field profile string # The name of a profile of the program (dimmer, moving_beam, moving_spot, moving_wash, rgb_par, rgbw_par), or a file whose name ends with `.fixture`.
----@field universe? number # Default: 1.
----@field address? number # Its first channel. Default: the first that is free for all its channels.
 ---@field targets? part|part[] # Up to 64 parts that it can aim at. With targets, the default of `aim` is "part".
 ---@opts fixture
 
