@@ -42,7 +42,8 @@
 
   // The titles of the program's own nodes, as in the panel of the window; objects have the names that users gave them.
   const TITLES = {
-    '/physics/sim': 'World', '/physics/body': 'Bodies', '/physics/gear': 'Gears', '/visuals': 'View', '/preset': 'Presets',
+    '/physics/sim': 'World', '/physics/body': 'Bodies', '/physics/gear': 'Gears', '/visuals': 'View',
+    '/lighting': 'Lighting', '/preset': 'Presets',
     '/take': 'Takes', '/edit': 'Undo', '/osc': 'OSC counters',
   };
   const MEMBERS = { part: 'Parts', joint: 'Joints', motor: 'Motors', behavior: 'Behaviors' };
