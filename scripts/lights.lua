@@ -7,10 +7,8 @@ params {
   { "brightness", 0.8, min = 0, max = 1, doc = "Brightness of the moving heads." },
 }
 
-visuals.look.style = "studio"
-visuals.look.exposure = 0.5
-visuals.camera.eye = vec3(0, -9, 2.2)
-visuals.camera.target = vec3(0, 0, 1.9)
+visuals.look.lamp, visuals.look.ambient, visuals.look.rim = 0.35, 0.5, 0.5
+visuals.camera:look_at(vec3(0, -9, 2.2), vec3(0, 0, 1.9))
 
 sim:add_plane_shape("floor", vec3(0, 0, 1))
 local floor = sim:add_body("floor")
