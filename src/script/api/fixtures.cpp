@@ -69,4 +69,11 @@ std::int32_t fixture_target(void* c, std::int32_t slot, std::int32_t generation,
   return part == nullptr ? kRemoved : context.set_id(part->id());
 }
 
+std::int32_t fixture_text(void* c, std::int32_t slot, std::int32_t generation, std::int32_t which) {
+  ScriptContext& context = context_of(c);
+  const sim::Fixture* const fixture = object_of<sim::Fixture>(context, id_of(slot, generation));
+  if (fixture == nullptr) return kRemoved;
+  return context.set_text(std::string(which == 0 ? fixture->read_profile() : fixture->read_dmx()));
+}
+
 }  // namespace limber::script::calls

@@ -19,6 +19,12 @@ fixture.getters.targets = function(h)
     i = i + 1
   end
 end
+for which, name in pairs { [0] = "profile", "dmx" } do
+  fixture.getters[name] = function(h)
+    if api.fixture_text(ctx, h.slot_, h.generation_, which) ~= 0 then P.fail_removed(h) end
+    return (P.text())
+  end
+end
 P.finish_class(fixture)
 
 local own = { profile = true, targets = true, universe = true, address = true }
