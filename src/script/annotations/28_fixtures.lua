@@ -11,7 +11,7 @@
 ---@error sim:add_fixture("spot", { profile = "moving_spott" }) --> there is no fixture profile 'moving_spott'; did you mean 'moving_spot'?
 ---@error sim:add_fixture("spot", { profile = "dimmer", universe = 0 }) --> fixture 'spot': the universe must be a whole number from 1 to 32767, got 0
 ---@error sim:add_fixture("spot", { profile = "rgb_par", address = 511 }) --> fixture 'spot': has 3 channels, so its address must be a whole number from 1 to 510, got 511
----@error sim:add_fixture("spot", { profile = "dimmer", targets = { "tip" } }) --> add_fixture: target 1 is a part, as body:part(name), not "tip"
+---@error sim:add_fixture("spot", { profile = "dimmer", targets = { "tip" } }) --> add_fixture: target 1 is a part, as body:part(name), not 'tip'
 ---@see fixture, sim:fixture
 ---@example fixtures
 function sim:add_fixture(name, opts) end
