@@ -68,6 +68,10 @@
 
 ---@page params Parameters and state: sliders for performers, and values that survive a save.
 
+---@page results Results: numbers that a run returns, and columns that it records.
+---`limber --out` writes them to files, `limber sweep` tabulates them for many parameters, and `limber evolve` searches for
+---the best. [Experiments](../../howto/experiments.md) shows how to use them.
+
 ---@page osc OSC messages: receive, send and reply to messages, choose ports, stream poses.
 
 ---@page presets Presets and morphs: store, recall, morph and delete saved states of the show.

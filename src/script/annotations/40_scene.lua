@@ -33,6 +33,45 @@ params = {}
 ---@example state
 state = {}
 
+---@page results
+
+---@class result_opts
+---@field min number # Smallest value of the range.
+---@field max number # Largest value of the range.
+---@field cells? integer # 1 .. 1000, default 10. Number of equal cells of the range, for `limber evolve --descriptor`.
+
+---Declares a number that the run returns: f is called once, at the end of the run. Call it at the top level of the scene.
+---@param name string # Its name: letters, digits, _; unique among results.
+---@param f fun(): number|boolean # Returns the value.
+---@param opts? result_opts # A range, if the result can be a descriptor.
+---@error result("distance", 3) --> result 'distance' takes a function, not 3
+---@error result("my distance", print) --> result takes a name of letters, digits and _, not 'my distance'
+---@error result("speed", print, { min = 1, max = 1 }) --> result 'speed': min is below max
+---@see sim:record
+---@example results
+function result(name, f, opts) end
+
+---A column of sim:record.
+---@class record_column
+---@field [1] string # Its name: letters, digits, _; unique among columns, and neither tick nor time.
+---@field [2] fun(): number|boolean # Returns the value.
+---@see sim:record
+---@example results
+
+---@class record_opts
+---@field [integer] record_column
+---@field rate? number # Hz, 0.001 .. 10000, default 60. Rows per simulated second, at most one per tick.
+
+---Declares columns that the run records with `--out`: in each row the tick, the time and the value of each function,
+---which is called before the physics step. Call it once, at the top level of the scene.
+---@param columns record_opts # The columns, in their order, and the rate.
+---@error sim:record {} --> sim:record takes a list of columns { "name", function() return … end }
+---@error sim:record { { "time", print } } --> sim:record: each row has the column 'time' already
+---@error sim:record { rate = 0, { "height", print } } --> sim:record: rate is 0.001 .. 10000 Hz, not 0
+---@see result
+---@example results
+function sim:record(columns) end
+
 ---@page osc
 
 ---OSC messages: handlers, and messages that the scene sends.

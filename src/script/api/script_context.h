@@ -16,6 +16,7 @@
 #include "script/api/call_effects.h"
 #include "script/api/params_node.h"
 #include "script/api/scene_random.h"
+#include "script/scene/run_output.h"
 #include "script/scene/scene_options.h"
 #include "script/scene/script_files.h"
 #include "script/scene/script_host.h"
@@ -63,7 +64,8 @@ struct CollectedArguments {
   sim::BuildOptions build;
   Message message;
   std::vector<Property> parameters;
-  std::array<sim::Selection, 5> selections;  ///< Parts, joints, motors, bodies, neighbor parts.
+  std::array<sim::Selection, 5> selections;   ///< Parts, joints, motors, bodies, neighbor parts.
+  std::span<std::int32_t* const> handle_ids;  ///< Slot and generation of every handle, while the handles are remapped.
 };
 
 /// Results of neighbor searches.
@@ -133,7 +135,7 @@ struct ScriptContext final : CallHooks {
   SceneParams params;
   SceneTimers timers;
   SceneRandom random;
-  std::span<std::int32_t* const> handle_ids;   ///< Slot and generation of every handle, while the handles are remapped.
+  RunOutput output;
   std::shared_ptr<BehaviorScripts> behaviors;  ///< Shared with the behaviors in the world.
 
   Guard* guard = nullptr;  ///< Of the scene's Vm.

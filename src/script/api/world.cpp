@@ -243,7 +243,7 @@ void cancel_timer(void* c, std::int32_t run, std::int32_t number) {
 }
 
 void handles(void* c, std::int32_t** ids, std::int32_t count) {
-  context_of(c).handle_ids = {ids, static_cast<std::size_t>(count)};
+  context_of(c).arguments.handle_ids = {ids, static_cast<std::size_t>(count)};
 }
 
 }  // namespace limber::script::calls

@@ -324,6 +324,7 @@ function P.exports.tick(dt)
   run_zones(1)
   run_zones(0)
   call_all(steps, dt)
+  if P.sample_row then P.sample_row() end
   P.report_fallbacks()
 end
 

@@ -102,7 +102,10 @@ end
 -- names that exist only in scenes or only in behaviors
 local elsewhere = {
   scene = { behavior = "; a behavior is a file of its own in behaviors_lua/" },
-  behavior = { state = "; a behavior stores its state in self.state" },
+  behavior = {
+    state = "; a behavior stores its state in self.state",
+    result = "; results belong to the scene's file",
+  },
 }
 
 -- environment of the scene (file -1) or of a behavior file, by its number
@@ -114,7 +117,7 @@ function P.make_env(file)
   env.vec3, env.quat, env.rgb, env.rng = P.vec3, P.make_quat(), P.rgb, P.R(-2 - file, 0)
   env.sim, env.osc, env.params, env.visuals = P.sim, P.osc, P.params, P.visuals
   env.presets = P.presets
-  if kind == "scene" then env.state = P.first_state() end
+  if kind == "scene" then env.state, env.result = P.first_state(), P.result end
   return setmetatable(env, {
     __index = function(_, key)
       local hint = elsewhere[kind][key] or P.hint(key, P.sorted_keys(env))

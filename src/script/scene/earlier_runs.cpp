@@ -35,7 +35,7 @@ std::string object_key(const ScriptContext& c, NodeId id) {
 
 void HandleNames::capture(const ScriptContext& context) {
   names_.clear();
-  for (const std::int32_t* const handle : context.handle_ids) {
+  for (const std::int32_t* const handle : context.arguments.handle_ids) {
     const NodeId id = id_of(handle[0], handle[1]);
     names_.push_back(context.alive(id) ? object_key(context, id) : std::string());
   }
@@ -45,7 +45,7 @@ void HandleNames::resolve(const ScriptContext& context) const {
   const Store& store = context.world->store();
   std::unordered_map<std::string, NodeId> found;  // filled on first use
   for (std::size_t i = 0; i < names_.size(); i++) {
-    std::int32_t* const handle = context.handle_ids[i];
+    std::int32_t* const handle = context.arguments.handle_ids[i];
     if (context.alive(id_of(handle[0], handle[1]))) continue;
     if (found.empty() && !names_[i].empty())
       store.walk(store.root(), [&](NodeId id) { found.emplace(object_key(context, id), id); });
@@ -85,7 +85,7 @@ void EarlierRuns::resolve_handles(NodeId params) {
     run.handle_names.resolve(*run.context);
     run.context->params.live = params;
     run.vm->handles_moved();
-    run.context->handle_ids = {};
+    run.context->arguments.handle_ids = {};
   }
 }
 

@@ -66,6 +66,13 @@ void Scene::tick(double dt) {
   vm_->tick(dt);
 }
 
+const std::vector<SceneResult>& Scene::compute_results() {
+  vm_->compute_results();
+  return context_->output.results;
+}
+
+RunOutput& Scene::output() { return context_->output; }
+
 bool Scene::has_handlers() const { return context_->osc.handlers > 0; }
 
 std::size_t Scene::disabled_handlers() const { return static_cast<std::size_t>(context_->osc.disabled_handlers); }
@@ -90,6 +97,7 @@ std::uint64_t Scene::state_hash(std::uint64_t start) const { return earlier_->ha
 void Scene::set_resimulating(bool on) {
   vm_->guard().set_resimulating(on);
   earlier_->set_resimulating(on);
+  context_->output.rows.set_muted(on);
 }
 
 VmMode Scene::mode() const { return vm_->mode(); }

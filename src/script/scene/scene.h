@@ -13,6 +13,7 @@
 #include "base/message.h"
 #include "base/result.h"
 #include "script/scene/run_inputs.h"
+#include "script/scene/run_output.h"
 #include "script/scene/scene_options.h"
 #include "script/scene/script_host.h"
 
@@ -72,6 +73,11 @@ class Scene {
   bool has_handlers() const;
   /// Number of handlers that failed or were stopped; they are disabled until the next successful run of the scene.
   std::size_t disabled_handlers() const;
+  /// Calls the functions of all results, in the order of their declaration, and returns the results. They may change
+  /// the world, so compute the state hash before.
+  const std::vector<SceneResult>& compute_results();
+  /// The declared results and columns.
+  RunOutput& output();
   /// Calls the matching osc:on handlers in the order of registration; false if there is none.
   bool handle_message(const Message& message, const CommandOrigin& origin);
   /// Collects garbage after a tick: about 100 µs at most; does nothing if there is little garbage.

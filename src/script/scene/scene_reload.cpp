@@ -60,12 +60,12 @@ namespace {
 
 // Maps the handles to the ids in the live store.
 void map_handles(ScriptContext& c, const std::function<NodeId(NodeId)>& live_id) {
-  for (std::int32_t* const id : c.handle_ids) {
+  for (std::int32_t* const id : c.arguments.handle_ids) {
     const NodeId live = live_id(id_of(id[0], id[1]));
     id[0] = live.null() ? -1 : static_cast<std::int32_t>(live.slot);
     id[1] = static_cast<std::int32_t>(live.generation);
   }
-  c.handle_ids = {};
+  c.arguments.handle_ids = {};
 }
 
 }  // namespace

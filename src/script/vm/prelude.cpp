@@ -30,6 +30,7 @@ std::span<const std::string_view> prelude_order() {
                                                            "fixtures.lua",
                                                            "visuals.lua",
                                                            "callbacks.lua",
+                                                           "results.lua",
                                                            "osc.lua",
                                                            "presets.lua",
                                                            "params.lua",

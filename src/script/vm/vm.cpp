@@ -206,6 +206,12 @@ void Vm::tick(double dt) {
   call(1, 0);
 }
 
+void Vm::compute_results() {
+  collector_->begin_calls();
+  push_export("results");
+  call(0, 0);
+}
+
 bool Vm::handle_message(const Message& message, const CommandOrigin& origin) {
   lua_State* const L = state_.get();
   if (message.args.size() > kMaxArguments || lua_checkstack(L, static_cast<int>(message.args.size()) + 8) == 0) {

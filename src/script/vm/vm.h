@@ -43,6 +43,8 @@ class Vm {
   void start();
   /// Runs timers, contacts, on_step. Allocates no C++ memory. [sim]
   void tick(double dt);
+  /// Computes the results of the run (ScriptContext::output). [sim]
+  void compute_results();
   /// Runs the matching osc:on handlers; false if there are none. [sim]
   bool handle_message(const Message& message, const CommandOrigin& origin);
   /// Calls the exported `function` of console.lua ("evaluate" or "complete") with a text. [sim]
@@ -63,7 +65,7 @@ class Vm {
   std::string state_text();
   /// Before a detached run: sets `state`. Nothing is compiled until become_live().
   void begin_detached(std::string_view state);
-  /// After the run: notes which keys of `state` it wrote, and collects all handles (ScriptContext::handle_ids).
+  /// After the run: notes which keys of `state` it wrote, and collects all handles (CollectedArguments::handle_ids).
   void prepare();
   /// Takes over `state` of the live run that is being replaced, except keys that this run wrote itself. [sim]
   void adopt_state(std::string_view state);
@@ -86,7 +88,7 @@ class Vm {
   void set_run_number(std::uint64_t number);
   /// Cancels a timer of this run by its number.
   void cancel_timer(std::int32_t number);
-  /// Collects all handles in the context (ScriptContext::handle_ids).
+  /// Collects all handles in the context (CollectedArguments::handle_ids).
   void gather_handles();
   /// Updates the prelude's tables after these handles were remapped.
   void handles_moved();
