@@ -38,6 +38,7 @@ Result<void> Engine::start() {
     if (Result<void> recorded = recording_.start(); !recorded) return recorded;
   }
   show_.presets.open(scenes_.read_presets(show_.options.scene));
+  show_.presets.suspend_saving(!show_.options.saves_presets);
   Result<void> started = scenes_.start();
   if (started) {
     publish();

@@ -75,6 +75,8 @@ class Engine {
 
   sim::World& world() { return show_.session->world; }
   Store& store() { return show_.session->store; }
+  /// The scene's run; null if there is no scene. [sim, or any after run()]
+  script::Scene* scene() { return show_.session->scene.get(); }
   const PhaseTimes& times() const { return times_; }
   const History& history() const { return show_.history; }
   const Presets& presets() const { return show_.presets; }

@@ -25,6 +25,7 @@ struct EngineOptions {
   std::optional<double> duration;      ///< Ends at this simulated time, s.
   bool strict = false;                 ///< Ends at the first fault.
   bool print = true;                   ///< Scripts print to stdout; false: to stderr, because stdout is the output.
+  bool saves_presets = true;           ///< False: presets that scripts store are not written to the disk.
   std::string preset;                  ///< `--preset`: recalled before the first tick.
   std::string record;                  ///< Records a take to this file, from the start on.
   std::string replay;                  ///< Replays this take, which contains the scene and all input.
@@ -35,6 +36,8 @@ struct EngineOptions {
   std::chrono::milliseconds recovery_interval = RecoverySaver::kInterval;
   bool recover = false;       ///< `--recover`: restores the values of a run that crashed.
   int threads = 1;            ///< Threads for each physics step. The result is the same for any number.
+  /// `--param`: values of the scene's own parameters, as messages to /scene/NAME; applied before `sets`.
+  std::vector<Message> params;
   std::vector<Message> sets;  ///< `--set`: overrides, applied before the first tick and after the preset.
   /// Called in each iteration of the loop of run(), at least 20 times a second, also while paused. Must not block.
   /// [sim]

@@ -150,7 +150,35 @@ void SceneRunner::reapply_overrides() {
   }
 }
 
-// Applies the values of the command line: --recover, --preset, --set.
+// Applies a value of --param, after a check of its name.
+Result<void> SceneRunner::apply_parameter(const Message& message) {
+  Session& session = *show_.session;
+  const std::string name = message.address.substr(message.address.rfind('/') + 1);
+  const NodeId node = session.scene == nullptr ? NodeId{} : session.scene->params();
+  if (!session.store.alive(node))
+    return Error{
+        fmt::format("--param {}: the scene has no parameters. Declare them with params {{ … }}", printable(name))};
+  const PropertyTable& table = session.store.table(node);
+  if (table.find(name) == nullptr)
+    return Error{fmt::format("--param {}: the scene has no such parameter{}", printable(name),
+                             name_hint(name, table.property_names()))};
+  return apply_override(message, fmt::format("--param {}", name));
+}
+
+// Applies a value of the command line as an override.
+Result<void> SceneRunner::apply_override(const Message& message, std::string_view option) {
+  const Outcome outcome = show_.session->dispatcher.execute(message);
+  if (outcome.kind == Outcome::Kind::answered) {
+    return Error{
+        fmt::format("{}: this is a query, not a value; set a path, such as /physics/sim/gravity=0,0,-1.6", option)};
+  }
+  if (outcome.kind != Outcome::Kind::applied) return Error{fmt::format("{}: {}", option, outcome.error)};
+  if (outcome.clamped != nullptr) show_.output().report_clamped(message, *outcome.clamped);
+  show_.overrides.add(message);
+  return {};
+}
+
+// Applies the values of the command line: --recover, --preset, --param, --set.
 Result<void> SceneRunner::apply_initial_overrides() {
   if (Result<void> recovered = recovery_.apply(); !recovered) return recovered;
   MessageDispatcher& dispatcher = show_.session->dispatcher;
@@ -159,17 +187,12 @@ Result<void> SceneRunner::apply_initial_overrides() {
     if (outcome.kind != Outcome::Kind::applied) return Error{fmt::format("--preset: {}", outcome.error)};
     if (!outcome.warning.empty()) show_.output().warn_once(outcome.warning);
   }
+  for (const Message& message : show_.options.params) {
+    if (Result<void> set = apply_parameter(message); !set) return set;
+  }
   for (const Message& message : show_.options.sets) {
-    const Outcome outcome = dispatcher.execute(message);
-    if (outcome.kind == Outcome::Kind::answered) {
-      return Error{
-          fmt::format("--set {}: this is a query, not a value; set a path, such as /physics/sim/gravity=0,0,-1.6",
-                      message.address)};
-    }
-    if (outcome.kind != Outcome::Kind::applied)
-      return Error{fmt::format("--set {}: {}", printable(message.address), outcome.error)};
-    if (outcome.clamped != nullptr) show_.output().report_clamped(message, *outcome.clamped);
-    show_.overrides.add(message);
+    if (Result<void> set = apply_override(message, fmt::format("--set {}", printable(message.address))); !set)
+      return set;
   }
   return {};
 }

@@ -71,6 +71,8 @@ class SceneRunner {
                    std::vector<script::SourceFile> failed_files = {});
   void reapply_overrides();
   Result<void> apply_initial_overrides();
+  Result<void> apply_parameter(const Message& message);
+  Result<void> apply_override(const Message& message, std::string_view option);
   void begin_show();
   ReloadRequest request_with(const AddedModel& model);
   Result<void> apply_added(ReloadCandidate& candidate, const std::string& previous);
