@@ -36,7 +36,11 @@ constexpr std::array kModules{
     Module{"ui/panel", "properties model engine"},
     // motion files, without access to the scene
     Module{"export", ""},
-    Module{"app", "properties model sim script engine net/osc net/lighting net/console net/oscquery ui/render ui/panel export"},
+    // designs, searches and the distribution of evaluations, without access to the scene
+    Module{"experiments", ""},
+    Module{"app",
+           "properties model sim script engine net/osc net/lighting net/console net/oscquery ui/render ui/panel export "
+           "experiments"},
 };
 
 /// Folders that only files of their own module include.
@@ -66,6 +70,7 @@ constexpr std::array kNamespaces{
     Namespace{"ui/render/", "render"},
     Namespace{"ui/panel/", "panel"},
     Namespace{"export/", "exporter"},
+    Namespace{"experiments/", "experiments"},
     Namespace{"app/", "app"},
 };
 /// A nested namespace that every module may extend: the constructors of property definitions.

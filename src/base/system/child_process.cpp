@@ -1,6 +1,7 @@
 // Starts child processes with posix_spawn().
 #include "base/system/child_process.h"
 
+#include <fcntl.h>
 #include <signal.h>  // NOLINT(modernize-deprecated-headers): POSIX has more than <csignal>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -26,10 +27,12 @@ void ChildProcess::kill() {
   waitpid(std::exchange(pid_, -1), nullptr, 0);
 }
 
-int ChildProcess::start(const std::vector<std::string>& words) {
+int ChildProcess::start(const std::vector<std::string>& words, bool quietly) {
   Descriptor read_end;
   Descriptor write_end;
-  if (!open_pipe(read_end, write_end)) return errno;
+  Descriptor output;
+  Descriptor child_output;
+  if (!open_pipe(read_end, write_end) || (quietly && !open_pipe(output, child_output))) return errno;
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
@@ -37,6 +40,10 @@ int ChildProcess::start(const std::vector<std::string>& words) {
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
   posix_spawn_file_actions_adddup2(&files, read_end.fd(), 0);
+  if (quietly) {
+    posix_spawn_file_actions_adddup2(&files, child_output.fd(), 1);
+    posix_spawn_file_actions_addopen(&files, 2, "/dev/null", O_WRONLY, 0);
+  }
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -55,6 +62,7 @@ int ChildProcess::start(const std::vector<std::string>& words) {
   if (fault != 0) return fault;
   pid_ = pid;
   input_ = std::move(write_end);
+  output_ = std::move(output);
   return 0;
 }
 

@@ -1,0 +1,256 @@
+// Distribution of evaluations to workers that are slow, crash and hang.
+#include "experiments/dispatcher.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "base/random.h"
+
+namespace limber::experiments::test {
+namespace {
+
+/// Workers without processes, in simulated time. `fate` decides what happens to an evaluation.
+class FakeWorkers final : public Workers {
+ public:
+  enum class Fate : std::uint8_t { answer, crash, hang };
+
+  explicit FakeWorkers(std::size_t count) : pending_(count), alive_(count, false) {}
+
+  std::size_t count() const override { return pending_.size(); }
+  Result<void> start(std::size_t worker) override {
+    starts++;
+    alive_[worker] = true;
+    pending_[worker].clear();
+    return {};
+  }
+  void send(std::size_t worker, std::string_view line) override {
+    const std::optional<Request> request = decode_request(line);
+    ASSERT_TRUE(request.has_value()) << line;
+    if (std::holds_alternative<WorkerSetup>(*request)) {
+      if (crash_at_setup) return add(worker, {}, 1);
+      return add(worker, fault.empty() ? encode(Answer(scene)) : encode(Answer(WorkerFault{fault})), 1);
+    }
+    const auto& evaluation = std::get<Evaluation>(*request);
+    const int tried = tries[evaluation.number]++;
+    const double duration = random_.uniform(0.01, 1);
+    switch (fate(evaluation.number, tried)) {
+      case Fate::answer:
+        return add(worker, encode(Answer(Outcome{evaluation.number, {value(evaluation)}, evaluation.number + 1, ""})),
+                   duration);
+      case Fate::crash:
+        return add(worker, {}, duration);
+      case Fate::hang:
+        return;
+    }
+  }
+  std::vector<Event> wait(std::chrono::milliseconds limit) override {
+    std::optional<std::size_t> first;
+    for (std::size_t i = 0; i < pending_.size(); i++) {
+      if (!pending_[i].empty() && (!first || pending_[i].front().at < pending_[*first].front().at)) first = i;
+    }
+    const double end = now + std::chrono::duration<double>(limit).count();
+    if (!first || pending_[*first].front().at > end) {
+      now = end;
+      return {};
+    }
+    const Pending next = pending_[*first].front();
+    pending_[*first].erase(pending_[*first].begin());
+    now = std::max(now, next.at);
+    if (!next.line) alive_[*first] = false;
+    return {{*first, next.line}};
+  }
+  static double value(const Evaluation& evaluation) { return 10 * evaluation.values.at(0) + 1; }
+
+  std::function<Fate(std::uint64_t number, int tried)> fate = [](auto, auto) { return Fate::answer; };
+  SceneInfo scene{{{"rate", 0, 1, 0.5, {}, false}}, {{"distance", 0, 0, 0}}};
+  std::string fault;
+  bool crash_at_setup = false;
+  double now = 0;
+  int starts = 0;
+  std::map<std::uint64_t, int> tries;
+
+ private:
+  struct Pending {
+    double at;
+    std::optional<std::string> line;
+  };
+  void add(std::size_t worker, std::optional<std::string> line, double duration) {
+    pending_[worker].push_back({now + duration, std::move(line)});
+  }
+  std::vector<std::vector<Pending>> pending_;
+  std::vector<bool> alive_;
+  Random random_{5, "durations"};
+};
+using Fate = FakeWorkers::Fate;
+
+struct Rig {
+  explicit Rig(std::size_t count) : workers(count), dispatcher(workers, options()) {}
+
+  Dispatcher::Options options() {
+    Dispatcher::Options options;
+    options.time_limit = 20;
+    options.clock = [this] { return workers.now; };
+    options.canceled = [this] { return cancel_at && workers.now >= *cancel_at; };
+    return options;
+  }
+  Result<Dispatcher::End> run(std::uint64_t count) {
+    next = 0;
+    dispatcher.set_setup({"scene.lua", 10, {"rate"}});
+    return dispatcher.run(
+        [this, count]() -> std::optional<Evaluation> {
+          if (next >= count) return {};
+          const std::uint64_t number = next++;
+          return Evaluation{number, 1, {static_cast<double>(number) / 8}};
+        },
+        [this](const Evaluation& evaluation, const Outcome& outcome) -> Result<void> {
+          EXPECT_EQ(evaluation.number, outcome.number);
+          outcomes.push_back(outcome);
+          return {};
+        });
+  }
+
+  FakeWorkers workers;
+  std::optional<double> cancel_at;
+  Dispatcher dispatcher;
+  std::uint64_t next = 0;
+  std::vector<Outcome> outcomes;
+};
+
+void expect_all(const std::vector<Outcome>& outcomes, std::uint64_t count) {
+  ASSERT_EQ(outcomes.size(), count);
+  for (std::uint64_t i = 0; i < count; i++) {
+    EXPECT_EQ(outcomes[i].number, i);
+    EXPECT_EQ(outcomes[i].error, "");
+    ASSERT_EQ(outcomes[i].results.size(), 1u);
+    EXPECT_EQ(outcomes[i].results[0], 10 * (static_cast<double>(i) / 8) + 1);
+  }
+}
+
+TEST(Dispatcher, CommitsInOrderForAnyNumberOfWorkers) {
+  for (const std::size_t count : {1u, 2u, 3u, 8u, 64u}) {
+    Rig rig(count);
+    ASSERT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+    const auto end = rig.run(200);
+    ASSERT_TRUE(end.ok()) << end.error();
+    EXPECT_EQ(*end, Dispatcher::End::done);
+    expect_all(rig.outcomes, 200);
+    EXPECT_EQ(rig.workers.starts, static_cast<int>(count));
+  }
+}
+
+TEST(Dispatcher, UsesAllWorkers) {
+  const auto duration = [](std::size_t count) {
+    Rig rig(count);
+    EXPECT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+    const double begin = rig.workers.now;
+    EXPECT_TRUE(rig.run(400).ok());
+    return rig.workers.now - begin;
+  };
+  EXPECT_LT(duration(4), duration(1) / 3.5);
+}
+
+TEST(Dispatcher, RepeatsEvaluationsOfWorkersThatDieOrHang) {
+  Rig rig(4);
+  rig.workers.fate = [](std::uint64_t number, int tried) {
+    if (tried == 0 && number % 7 == 0) return Fate::crash;
+    if (tried < 2 && number % 11 == 0) return Fate::hang;
+    return Fate::answer;
+  };
+  ASSERT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+  const auto end = rig.run(100);
+  ASSERT_TRUE(end.ok()) << end.error();
+  expect_all(rig.outcomes, 100);
+}
+
+TEST(Dispatcher, GivesUpAfterThreeTries) {
+  Rig rig(2);
+  rig.workers.fate = [](std::uint64_t number, int) {
+    return number == 3 ? Fate::crash : number == 5 ? Fate::hang : Fate::answer;
+  };
+  ASSERT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+  ASSERT_TRUE(rig.run(10).ok());
+  ASSERT_EQ(rig.outcomes.size(), 10u);
+  EXPECT_EQ(rig.outcomes[3].error, "the simulation crashed, 3 times");
+  EXPECT_EQ(rig.outcomes[5].error, "the simulation took longer than 20 s, 3 times");
+  EXPECT_EQ(rig.outcomes[9].error, "");
+  EXPECT_EQ(rig.workers.tries[3], Dispatcher::kTries);
+  EXPECT_EQ(rig.workers.tries[5], Dispatcher::kTries);
+  EXPECT_EQ(rig.workers.tries[4], 1);
+}
+
+TEST(Dispatcher, LimitsHowFarOthersAreAhead) {
+  Rig rig(2);
+  std::uint64_t farthest = 0;
+  rig.workers.fate = [&](std::uint64_t number, int tried) {
+    if (rig.outcomes.empty()) farthest = std::max(farthest, number);
+    return number == 0 && tried < 2 ? Fate::hang : Fate::answer;
+  };
+  rig.workers.now = 0;
+  ASSERT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+  ASSERT_TRUE(rig.run(5000).ok());
+  EXPECT_LE(farthest, 2 * Dispatcher::kAhead);
+  EXPECT_EQ(rig.outcomes.size(), 5000u);
+}
+
+TEST(Dispatcher, CancelKeepsWhatWasCommitted) {
+  Rig rig(3);
+  ASSERT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+  rig.cancel_at = rig.workers.now + 10;
+  const auto end = rig.run(1000);
+  ASSERT_TRUE(end.ok());
+  EXPECT_EQ(*end, Dispatcher::End::canceled);
+  EXPECT_GT(rig.outcomes.size(), 20u);
+  EXPECT_LT(rig.outcomes.size(), 1000u);
+  for (std::uint64_t i = 0; i < rig.outcomes.size(); i++) EXPECT_EQ(rig.outcomes[i].number, i);
+}
+
+TEST(Dispatcher, ReportsTheErrorOfTheScene) {
+  Rig rig(2);
+  rig.workers.fault = "scene.lua:3: there is no global 'x'";
+  const Result<SceneInfo> scene = rig.dispatcher.describe({"scene.lua", 10, {}});
+  ASSERT_FALSE(scene.ok());
+  EXPECT_EQ(scene.error(), "scene.lua:3: there is no global 'x'");
+}
+
+TEST(Dispatcher, EndsIfWorkersNeverBegin) {
+  Rig rig(2);
+  rig.workers.crash_at_setup = true;
+  const Result<SceneInfo> scene = rig.dispatcher.describe({"scene.lua", 10, {}});
+  ASSERT_FALSE(scene.ok());
+  EXPECT_EQ(scene.error(), "the simulation crashed 3 times before it could begin; check the scene with limber play");
+}
+
+TEST(Evaluation, LinesKeepAllBits) {
+  const Evaluation evaluation{9007199254740993u, 18446744073709551615u, {0.1, 1.0 / 3, -0.0, 5e-324, 1.7e308}};
+  const auto back = std::get<Evaluation>(*decode_request(encode(Request(evaluation))));
+  EXPECT_EQ(back.number, evaluation.number);
+  EXPECT_EQ(back.seed, evaluation.seed);
+  ASSERT_EQ(back.values.size(), evaluation.values.size());
+  for (std::size_t i = 0; i < back.values.size(); i++)
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(back.values[i]), std::bit_cast<std::uint64_t>(evaluation.values[i]));
+  const Outcome outcome{7, {std::numeric_limits<double>::quiet_NaN(), 2.5, -1 / 0.0}, 0xfedcba9876543210u, "why\n\""};
+  const auto same = std::get<Outcome>(*decode_answer(encode(Answer(outcome))));
+  EXPECT_TRUE(std::isnan(same.results[0]));
+  EXPECT_EQ(same.results[1], 2.5);
+  EXPECT_EQ(same.results[2], -1 / 0.0);
+  EXPECT_EQ(same.hash, outcome.hash);
+  EXPECT_EQ(same.error, outcome.error);
+  for (const char* wrong :
+       {"", "{}", "[]", "{\"evaluate\":{}}", "{\"evaluate\":3}", "null", "{\"setup\":{\"scene\":1}}"})
+    EXPECT_FALSE(decode_request(wrong).has_value()) << wrong;
+  for (const char* wrong : {"", "{}", "{\"outcome\":{\"number\":1}}", "{\"scene\":{}}", "{\"fault\":1}"})
+    EXPECT_FALSE(decode_answer(wrong).has_value()) << wrong;
+}
+
+}  // namespace
+}  // namespace limber::experiments::test
