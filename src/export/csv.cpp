@@ -47,6 +47,7 @@ class CsvWriter : public MotionWriter {
       for (const std::string& value : joint.values)
         add_column(fmt::format("{}/joint/{}/{}", prefix, escape_name(joint.name), value));
     }
+    for (const std::string& extra : body.extras) add_column(fmt::format("{}/{}", prefix, extra));
     widths_.push_back(columns_ - before);
     return {};
   }
@@ -97,6 +98,7 @@ class CsvWriter : public MotionWriter {
       for (const double value : {p.x, p.y, p.z, q.x, q.y, q.z, q.w}) append_number(line_, value);
     }
     for (const double value : sample.values) append_number(line_, value);
+    for (const double value : sample.extras) append_number(line_, value);
   }
 
   // copies the lines below the complete header and appends empty cells for columns that were added later

@@ -45,13 +45,15 @@ struct MotionBody {
   std::string name;
   std::vector<MotionLink> links;
   std::vector<MotionJoint> joints;
+  std::vector<std::string> extras = {};  ///< Names of further values, which tables contain: "part/leaf/velocity_x" …
 };
 
 /// The state of a body in one frame.
 struct MotionSample {
-  bool present = false;        ///< False: the body does not exist in this frame; the other fields are unused.
-  std::vector<Pose> links;     ///< World poses, Z up.
-  std::vector<double> values;  ///< Values of all joints, in the order of MotionBody::joints.
+  bool present = false;             ///< False: the body does not exist in this frame; the other fields are unused.
+  std::vector<Pose> links;          ///< World poses, Z up.
+  std::vector<double> values;       ///< Values of all joints, in the order of MotionBody::joints.
+  std::vector<double> extras = {};  ///< In the order of MotionBody::extras.
 };
 
 /// The links of a body in depth-first order, each after its parent. Links in cycles are omitted.

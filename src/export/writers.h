@@ -9,9 +9,9 @@
 
 namespace limber::exporter {
 
-/// CSV: one line per frame with the pose of every link and the value of every joint. Memory use is independent of the
-/// number of frames: lines are written to disk as they arrive. If a body was added after the first frame, finish()
-/// rewrites the file with the complete header.
+/// CSV: one line per frame with the pose of every link, the value of every joint and the extras of every body. Memory
+/// use is independent of the number of frames: lines are written to disk as they arrive. If a body was added after the
+/// first frame, finish() rewrites the file with the complete header.
 Result<std::unique_ptr<MotionWriter>> make_csv_writer(const std::string& path);
 
 /// BVH: one motion capture skeleton per body. Y up, meters, degrees. If `path` ends with .bvh, it writes one file, and

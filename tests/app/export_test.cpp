@@ -345,5 +345,40 @@ TEST(Export, ErrorsNameTheFix) {
     EXPECT_NE(help.find(taught), std::string::npos) << taught;
 }
 
+// A ball that rests on the floor, and one that falls: v = −g·t after t, N = m·g.
+TEST(Export, ExtrasAreVelocitiesTorquesAndContacts) {
+  const TempFolder folder;
+  const std::string take = record(folder, R"(
+sim:add_body("ground"):add_part("floor", sim:add_plane_shape("floor"))
+local ball = sim:add_sphere_shape("ball", 0.1)
+sim:add_body("rests"):add_part("ball", ball, { mass = 2, position = vec3(0, 0, 0.1) })
+sim:add_body("falls"):add_part("ball", ball, { position = vec3(9, 0, 99) })
+)",
+                                  "60");
+  const std::string table = folder.path() + "/t.csv";
+  const RunResult result =
+      run({"export", take, "-o", table, "--with", "velocities,contacts", "--with", "torques", "--from", "1"});
+  ASSERT_EQ(result.code, 0) << result.err;
+  std::istringstream lines(content(table));
+  std::string header;
+  std::string line;
+  std::getline(lines, header);
+  std::getline(lines, line);
+  std::map<std::string, double> values;
+  std::istringstream names(header);
+  std::istringstream cells(line);
+  for (std::string name, cell; std::getline(names, name, ',') && std::getline(cells, cell, ',');)
+    values[name] = cell.empty() ? 0 : std::stod(cell);
+  ASSERT_TRUE(values.contains("falls/part/ball/linear_velocity_z")) << header;
+  EXPECT_NEAR(values["falls/part/ball/linear_velocity_z"], -9.81, 1e-3);
+  EXPECT_NEAR(values["rests/part/ball/linear_velocity_z"], 0, 1e-3);
+  EXPECT_NEAR(values["rests/part/ball/contact_normal_force"], 2 * 9.81, 0.05);
+  EXPECT_NEAR(values["rests/part/ball/contact_force_z"], 2 * 9.81, 0.05);
+  EXPECT_EQ(values["falls/part/ball/contact_normal_force"], 0);
+  const RunResult wrong = run({"export", take, "-o", folder.path() + "/t.glb", "--with", "torques"});
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("--with adds columns to a table"), std::string::npos) << wrong.err;
+}
+
 }  // namespace
 }  // namespace limber::app::test

@@ -68,6 +68,7 @@ struct ExportCommand {
   std::vector<std::string> bodies;  ///< Names or patterns; empty: all bodies.
   double from = 0;                  ///< Start, in simulated seconds since the beginning of the take.
   std::optional<double> to;         ///< End, in the same unit; nullopt: the end of the take.
+  std::vector<std::string> extras;  ///< With CSV: velocities, torques, contacts.
   bool overwrite = false;
 };
 /// `limber export`: replays a take at full speed and exports its motion for other programs: CSV, BVH, glTF. Returns 1

@@ -1,6 +1,7 @@
 // Replays a take and samples it at the export's frame rate.
 #include "app/commands/commands.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -100,6 +101,13 @@ Result<std::unique_ptr<exporter::MotionWriter>> open_writer(const Plan& plan, do
   return exporter::make_gltf_writer(plan.output);
 }
 
+MotionExtras extras_of(const ExportCommand& command) {
+  const auto has = [&](std::string_view name) {
+    return std::ranges::find(command.extras, name) != command.extras.end();
+  };
+  return {has("velocities"), has("torques"), has("contacts")};
+}
+
 // number of ticks that advance time
 Result<std::uint64_t> ticks_of(const std::string& take) {
   auto opened = engine::TakeReader::open(take);
@@ -162,6 +170,8 @@ int report_result(const Plan& plan, const ExportCommand& command, const ExportRe
 int export_take(const ExportCommand& command, const std::function<bool()>& cancel) {
   const Result<Plan> plan = make_plan(command);
   if (!plan) return fail(kUsageError, plan.error());
+  if (!command.extras.empty() && plan->format != Format::csv)
+    return fail(kUsageError, "--with adds columns to a table; use it with --format csv");
   if (command.to && *command.to < command.from)
     return fail(kUsageError, fmt::format("--to {} is before --from {}; choose a later time", number_text(*command.to),
                                          number_text(command.from)));
@@ -175,7 +185,7 @@ int export_take(const ExportCommand& command, const std::function<bool()>& cance
   Result<std::unique_ptr<exporter::MotionWriter>> writer = open_writer(*plan, command.rate);
   if (!writer) return fail(kInputError, writer.error());
   OfflineClock clock(engine, link, cancel);
-  MotionSource source(command.bodies);
+  MotionSource source(command.bodies, extras_of(command));
   const ExportResult end = write_frames(command, *ticks, engine, clock, source, **writer);
   if (!end.written) return fail(kMachineError, end.written.error());
   if (end.canceled) {

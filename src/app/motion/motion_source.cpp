@@ -2,13 +2,18 @@
 #include "app/motion/motion_source.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "base/text.h"
 #include "sim/world/body.h"
 #include "sim/world/joint.h"
+#include "sim/world/motor.h"
 #include "sim/world/part.h"
 
 namespace limber::app {
@@ -61,6 +66,40 @@ std::vector<NamedValue> exported_values(model::JointType type) {
 std::vector<std::string> value_names(model::JointType type) {
   std::vector<std::string> names;
   for (const NamedValue& value : exported_values(type)) names.emplace_back(value.name);
+  return names;
+}
+
+// calls visit(node, property, name of the object) for each readout of the extras, in the order of the columns
+template <class Visit>
+void visit_extras(const sim::Body& body, const MotionExtras& extras, Visit visit) {
+  const auto visit_all = [&](const auto& objects, const PropertyTable& table, const char* kind, const auto& name_of,
+                             std::initializer_list<const char*> properties) {
+    for (const auto& object : objects) {
+      for (const char* property : properties)
+        visit(object->id(), table.at(property), fmt::format("{}/{}", kind, escape_name(name_of(*object))));
+    }
+  };
+  const auto own_name = [](const auto& object) { return object.name(); };
+  const auto joint_name = [](const sim::Motor& motor) { return motor.joint().name(); };
+  const PropertyTable& parts = sim::Part::table();
+  if (extras.velocities) {
+    visit_all(body.parts(), parts, "part", own_name, {"linear_velocity", "angular_velocity"});
+    visit_all(body.joints(), sim::Joint::table(), "joint", own_name, {"speed"});
+  }
+  if (extras.torques)
+    visit_all(body.motors(), sim::Motor::table(), "motor", joint_name, {"applied_force", "applied_torque"});
+  if (extras.contacts) visit_all(body.parts(), parts, "part", own_name, {"contact_normal_force", "contact_force"});
+}
+
+std::vector<std::string> extra_names(const sim::Body& body, const MotionExtras& extras) {
+  std::vector<std::string> names;
+  visit_extras(body, extras, [&](NodeId, const Property& property, const std::string& object) {
+    if (property.width == 1) {
+      names.push_back(fmt::format("{}/{}", object, property.name));
+      return;
+    }
+    for (const char axis : {'x', 'y', 'z'}) names.push_back(fmt::format("{}/{}_{}", object, property.name, axis));
+  });
   return names;
 }
 
@@ -140,6 +179,7 @@ MotionSource::Track MotionSource::make_track(const sim::Body& body, const engine
     for (const NamedValue& value : exported_values(joint.type()))
       track.values.push_back({i, value.offset, value.wraps});
   }
+  track.body.extras = extra_names(body, extras_);
   return track;
 }
 
@@ -156,7 +196,38 @@ int MotionSource::find_or_add_track(const sim::Body& body, const engine::BodyEnt
 }
 
 void MotionSource::update(const sim::World& world, const engine::Snapshot& current) {
-  if (recent_[0].body_list == current.body_list) return;
+  if (recent_[0].body_list != current.body_list) update_body_list(world, current);
+  read_extras(world);
+}
+
+// Reads the extras of all bodies after a tick.
+void MotionSource::read_extras(const sim::World& world) {
+  const BodyListTracks& tracks = recent_[0];
+  for (std::size_t i = 0; i < tracks_.size(); i++) {
+    Track& track = tracks_[i];
+    if (track.body.extras.empty()) continue;
+    std::swap(track.extras_before, track.extras_now);
+    track.extras_now.clear();
+    if (i >= tracks.body_of.size() || tracks.body_of[i] < 0) continue;
+    const sim::Body& body = *world.bodies()[static_cast<std::size_t>(tracks.body_of[i])];
+    visit_extras(body, extras_, [&](NodeId node, const Property& property, const std::string&) {
+      std::array<double, 4> values{};
+      world.store().get(node, property, values.data());
+      track.extras_now.insert(track.extras_now.end(), values.begin(), values.begin() + property.width);
+    });
+  }
+}
+
+// Interpolates between the last two ticks.
+void MotionSource::fill_extras(const Track& track, double mix, exporter::MotionSample& sample) const {
+  const std::vector<double>& now = track.extras_now;
+  const std::vector<double>& before = track.extras_before.size() == now.size() ? track.extras_before : now;
+  sample.extras.assign(track.body.extras.size(), 0.0);
+  for (std::size_t k = 0; k < std::min(now.size(), sample.extras.size()); k++)
+    sample.extras[k] = before[k] + (now[k] - before[k]) * mix;
+}
+
+void MotionSource::update_body_list(const sim::World& world, const engine::Snapshot& current) {
   std::swap(recent_[0], recent_[1]);
   BodyListTracks& tracks = recent_[0];
   tracks.body_list = current.body_list;
@@ -197,6 +268,7 @@ Result<void> MotionSource::add_frame(double time, const engine::Snapshot& previo
     const engine::BodyEntry& b =
         continues ? current.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
     fill_sample(track, {snapshot, a}, {continues ? current : snapshot, b}, continues ? mix : 0);
+    fill_extras(track, continues ? mix : mix >= 1 ? 1 : 0, samples_[*track.writer_number]);
   }
   return writer.add_frame(time, samples_);
 }

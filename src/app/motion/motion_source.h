@@ -17,11 +17,19 @@
 
 namespace limber::app {
 
+/// Further values of bodies, for tables.
+struct MotionExtras {
+  bool velocities = false;  ///< Velocities of parts, speeds of joints.
+  bool torques = false;     ///< Forces and torques that motors apply.
+  bool contacts = false;    ///< Normal forces at the contacts of parts, and the total force of these.
+};
+
 /// Tracks the bodies of a running engine.
 class MotionSource {
  public:
   /// `patterns`: names or OSC patterns of bodies; empty: all bodies.
-  explicit MotionSource(std::vector<std::string> patterns) : patterns_(std::move(patterns)) {}
+  explicit MotionSource(std::vector<std::string> patterns, const MotionExtras& extras = {})
+      : patterns_(std::move(patterns)), extras_(extras) {}
 
   /// Updates the list of bodies; called before the first tick and after each. A body that is created again with the
   /// same name, parts and joints (after a reset, for example) continues the same track. [sim]
@@ -49,7 +57,8 @@ class MotionSource {
     exporter::MotionBody body;
     std::uint64_t content = 0;  // hash of the body's model
     std::vector<Value> values;
-    std::optional<std::size_t> writer_number;  // the writer's number of the body
+    std::vector<double> extras_before, extras_now;  // after the last two ticks; empty: the body did not exist
+    std::optional<std::size_t> writer_number;       // the writer's number of the body
   };
   // maps the bodies of a body list to tracks and back; -1: none
   struct BodyListTracks {
@@ -65,12 +74,16 @@ class MotionSource {
   };
   void fill_sample(const Track& track, const BodyAt& from, const BodyAt& to, double mix);
 
+  void update_body_list(const sim::World& world, const engine::Snapshot& current);
+  void read_extras(const sim::World& world);
+  void fill_extras(const Track& track, double mix, exporter::MotionSample& sample) const;
   int find_or_add_track(const sim::Body& body, const engine::BodyEntry& entry, const engine::Snapshot& current);
   Track make_track(const sim::Body& body, const engine::BodyEntry& entry, const engine::Snapshot& current);
   bool is_selected(const std::string& name) const;
   const BodyListTracks& tracks_of(const engine::BodyList* body_list) const;
 
   std::vector<std::string> patterns_;
+  MotionExtras extras_;
   std::vector<std::string> names_;
   std::vector<Track> tracks_;
   std::array<BodyListTracks, 2> recent_;  // the latest first
