@@ -16,11 +16,14 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/command_info.h"
+#include "app/cli/experiment_options.h"
+#include "app/cli/export_options.h"
 #include "app/cli/inspect_options.h"
 #include "app/cli/play_options.h"
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/exit_code.h"
+#include "app/experiments/worker.h"
 #include "app/paths.h"
 #include "app/service/service.h"
 #include "app/view/display_options.h"
@@ -32,9 +35,9 @@ namespace limber::app {
 
 namespace {
 
-constexpr std::array<std::string_view, 17> kCommands = {
-    "play",   "console", "monitor", "send",   "new",     "inspect", "describe",   "annotate", "bench",
-    "preset", "take",    "export",  "doctor", "service", "docs",    "completion", "man"};
+constexpr std::array<std::string_view, 19> kCommands = {
+    "play",  "sweep",  "evolve", "console", "monitor", "send",    "new",  "inspect",    "describe", "annotate",
+    "bench", "preset", "take",   "export",  "doctor",  "service", "docs", "completion", "man"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua and controlled over OSC.\n\n"
@@ -46,6 +49,7 @@ constexpr const char* kAbout =
     "  limber console -e sim.time                   evaluate Lua in the running program\n"
     "  limber monitor                               print the messages it receives and sends\n"
     "  limber export evening.take --format gltf     export recorded motion for other programs\n"
+    "  limber sweep my.lua --param rate=0.1:1:0.1   a table of results for ten values\n"
     "  limber new show my_show                      create a folder with an example\n";
 
 constexpr const char* kExitCodes =
@@ -96,6 +100,10 @@ struct CommandLine {
   DoctorCommand doctor;
   DocsCommand docs;
   ServiceCommand service;
+  struct {
+    SweepCommand sweep;
+    EvolveCommand evolve;
+  } experiments;
   std::string shell;  // completion
   bool json = false;
   bool markdown = false;
@@ -227,48 +235,6 @@ void add_take(CLI::App& app, std::string& file) {
       "  limber export evening.take --format gltf");
 }
 
-// a number within a range
-CLI::Validator number_between(double min, double max) {
-  return CLI::Validator(
-      [min, max](std::string& text) {
-        const std::optional<double> number = parse_number(text);
-        return number && *number >= min && *number <= max
-                   ? std::string()
-                   : fmt::format("'{}' must be a number from {} to {}", text, number_text(min), number_text(max));
-      },
-      "", "number");
-}
-
-void add_export(CLI::App& app, ExportCommand& command) {
-  CLI::App* subcommand = app.add_subcommand("export", "Export a take as motion for other programs: CSV, BVH, glTF.");
-  subcommand->footer(
-      "Replays the take at full speed and samples it at the frame rate, interpolating between ticks.\n"
-      "  csv   a table, one line per frame: position and rotation of each part, value of each joint\n"
-      "  bvh   one skeleton per body; Y up, meters; -o NAME.bvh writes one body, else a folder\n"
-      "  gltf  bodies with their meshes and one animation; Y up, meters; .glb, or .gltf with a .bin file\n"
-      "  limber export evening.take --format gltf                    write evening.glb\n"
-      "  limber export evening.take -o arm1.bvh --body arm1 --rate 30\n"
-      "  limber export evening.take -o arms.csv --body 'arm*' --from 60 --to 90\n"
-      "The formats are described in docs/howto/export.md.");
-  subcommand->add_option("take", command.take, "The take.")->type_name("TAKE")->required();
-  subcommand->add_option("--format", command.format, "Format; default: by the extension of -o.")
-      ->type_name("csv|bvh|gltf")
-      ->check(CLI::IsMember({"csv", "bvh", "gltf"}));
-  subcommand->add_option("-o,--output", command.output, "Output file; default: next to the take, with the same name.")
-      ->type_name("FILE");
-  subcommand->add_option("--rate", command.rate, "Frames per simulated second; default 60.")
-      ->type_name("N")
-      ->check(number_between(0.01, 10000));
-  subcommand->add_option("--body", command.bodies, "Export only bodies of this name or pattern; may be repeated.")
-      ->type_name("PATTERN")
-      ->allow_extra_args(false);
-  subcommand->add_option("--from", command.from, "Start time in simulated seconds of the take.")
-      ->type_name("S")
-      ->check(number_between(0, 1e9));
-  subcommand->add_option("--to", command.to, "End time.")->type_name("S")->check(number_between(0, 1e9));
-  subcommand->add_flag("--overwrite", command.overwrite, "Overwrite an existing file.");
-}
-
 void add_service(CLI::App& app, ServiceCommand& command) {
   CLI::App* service =
       app.add_subcommand("service", "Install shows as services that systemd starts, monitors and restarts.");
@@ -369,6 +335,8 @@ void add_commands(CLI::App& app, CommandLine& line) {
   app.set_version_flag("--version", fmt::format("limber {} ({})", version(), commit()));
   app.require_subcommand(1);
   add_play_options(*app.add_subcommand("play", "Play a scene (the default command)."), line.play);
+  add_sweep(app, line.experiments.sweep);
+  add_evolve(app, line.experiments.evolve);
   add_inspect(app, line.inspect);
   add_describe(app, line);
   add_bench(app, line);
@@ -416,6 +384,8 @@ struct CommandRunner {
 // all but those that need the command line's description: completion and man
 constexpr CommandRunner kRunners[] = {
     {"play", [](CommandLine& l) { return play_command(l.play); }},
+    {"sweep", [](CommandLine& l) { return sweep_command(l.experiments.sweep); }},
+    {"evolve", [](CommandLine& l) { return evolve_command(l.experiments.evolve); }},
     {"inspect", [](CommandLine& l) { return inspect_command(l.inspect); }},
     {"describe",
      [](CommandLine& l) {
@@ -441,6 +411,7 @@ constexpr CommandRunner kRunners[] = {
 };
 
 int run_command(int argc, char** argv) {
+  if (argc == 2 && argv[1] == kWorkerArgument) return run_worker();
   CLI::App app{kAbout, "limber"};
   CommandLine line;
   add_commands(app, line);

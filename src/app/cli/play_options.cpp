@@ -150,12 +150,21 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   CLI::Option* seed = play->add_option("--seed", o.seed, "Seed of the random numbers; overrides sim.seed of the scene.")
                           ->type_name("N")
                           ->check(plain_count());
+  CLI::Option* params =
+      play->add_option("--param", o.run.params,
+                       "Set a parameter of the scene (params { … }), applied before --set; may be repeated.")
+          ->type_name("NAME=VALUE")
+          ->allow_extra_args(false);
   CLI::Option* sets =
       play->add_option(
-              "--set", o.sets,
+              "--set", o.run.sets,
               "Set a value after the scene has run; a path or an OSC address of ofxDabPhysics; may be repeated.")
           ->type_name("PATH=VALUE")
           ->allow_extra_args(false);
+  play->add_option("--out", o.run.out,
+                   "Write the columns of sim:record to this file, .csv or .jsonl, or to a folder, together with the "
+                   "results, the seed, the parameters and the state hash.")
+      ->type_name("FILE|DIR");
   CLI::Option* preset =
       play->add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
           ->type_name("NAME");
@@ -175,6 +184,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
           ->excludes(scene)
           ->excludes(save_scene)
           ->excludes(seed)
+          ->excludes(params)
           ->excludes(sets)
           ->excludes(preset);
   play->add_flag("--recover", o.recover,

@@ -12,6 +12,7 @@
 #include "app/paths.h"
 #include "app/show/engine_thread.h"
 #include "app/show/query_host.h"
+#include "app/show/run_file.h"
 #include "app/show/scene_loader.h"
 #include "app/show/service_notifier.h"
 #include "app/show/show_loop.h"
@@ -30,19 +31,28 @@
 #include "net/console/server.h"
 #include "net/lighting/output.h"
 #include "net/osc/network.h"
+#include "script/scene/scene.h"
 
 namespace limber::app {
 
 namespace {
 
-// parses "PATH=VALUE": numbers separated by spaces or commas, true, false, or text
-Result<Message> parse_set(const std::string& text) {
+// an option whose text is NAME=VALUE
+struct ValueOption {
+  std::string_view name;
+  std::string_view form;    // of its text, with an example
+  std::string_view prefix;  // of the address
+};
+constexpr ValueOption kSetOption{"--set", "PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", "/"};
+constexpr ValueOption kParamOption{"--param", "NAME=VALUE, such as rate=0.5", "/scene/"};
+
+// parses "NAME=VALUE": numbers separated by spaces or commas, true, false, or text
+Result<Message> parse_value(const std::string& text, const ValueOption& option) {
   const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) {
-    return Error{fmt::format("--set '{}': write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
-  }
+  if (equals == std::string::npos || equals == 0)
+    return Error{fmt::format("{} '{}': write {}", option.name, printable(text), option.form)};
   Message message{text.substr(0, equals), {}};
-  if (message.address.front() != '/') message.address = fmt::format("/{}", message.address);
+  if (message.address.front() != '/') message.address = fmt::format("{}{}", option.prefix, message.address);
   std::string values = text.substr(equals + 1);
   for (char& c : values) {
     if (c == ',' || c == '\t') c = ' ';
@@ -58,8 +68,7 @@ Result<Message> parse_set(const std::string& text) {
     }
   }
   if (message.args.empty()) {
-    return Error{
-        fmt::format("--set '{}': no value after the =; write PATH=VALUE, such as /physics/sim/gravity=0,0,-1.6", text)};
+    return Error{fmt::format("{} '{}': no value after the =; write {}", option.name, printable(text), option.form)};
   }
   return message;
 }
@@ -126,17 +135,33 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
     engine.recovery_folder = state + "/recovery";
   engine.recover = options.recover;
   if (options.network.lights && engine.replay.empty()) engine.sets.push_back({"/lighting/armed", {Arg::of(true)}});
-  for (const std::string& text : options.sets) {
-    Result<Message> set = parse_set(text);
+  for (const std::string& text : options.run.params) {
+    Result<Message> param = parse_value(text, kParamOption);
+    if (!param) return Error{param.error()};
+    engine.params.push_back(std::move(*param));
+  }
+  for (const std::string& text : options.run.sets) {
+    Result<Message> set = parse_value(text, kSetOption);
     if (!set) return Error{set.error()};
     engine.sets.push_back(std::move(*set));
   }
   return engine;
 }
 
-int finish(const PlayOptions& options, engine::Engine& engine, bool interrupted) {
+// computes the results, after the state hash, and writes them to the output file, if there is one
+Result<void> finish_results(const PlayOptions& options, engine::Engine& engine, RunFile* file) {
+  if (engine.scene() == nullptr) return {};
+  const std::uint64_t hash = engine.state_hash();
+  (void)engine.scene()->compute_results();
+  if (options.fast || file != nullptr) print_results(engine);
+  return file == nullptr ? Result<void>() : file->finish(engine, hash);
+}
+
+int finish(const PlayOptions& options, engine::Engine& engine, bool interrupted, RunFile* file = nullptr) {
   if (interrupted) print_notice("ended at {:.2f} s", engine.world().time());
   if (options.hash) print_result("hash {:016x} tick {}\n", engine.state_hash(), engine.world().tick());
+  if (const Result<void> written = finish_results(options, engine, file); !written)
+    return fail(kMachineError, written.error());
   if (!options.take.replay.empty()) {
     const engine::ReplayResult result = engine.replay_result();
     print_notice("{}", engine::text_of(result));
@@ -216,6 +241,7 @@ class Playing {
         lights_(link_, outputs.lights),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
         query_(link_, query_host(network_, osc_.allow, options.network.query_names)) {
+    if (!options.run.out.empty()) run_file_.emplace(options.run.out, options.scene, options.fast || options.lockstep);
     if ((!options.fast || options.watch) && options.take.replay.empty())
       scene_loader_.emplace(link_, engine_, scene_file_, &models_);
   }
@@ -258,6 +284,7 @@ class Playing {
     options.on_iteration = [this] {
       notifier_.on_iteration();
       lights_.notify();
+      if (run_file_) run_file_->collect(engine_);
     };
     return options;
   }
@@ -266,6 +293,9 @@ class Playing {
     loop.wait_for_scene();
     if (!engine_thread.result() && !loop.may_wait_for_fix())
       return fail_start(engine_thread.exit_code(), engine_thread.result().error());
+    if (run_file_ && engine_thread.result()) {
+      if (const Result<void> open = run_file_->open(engine_); !open) return fail_start(kInputError, open.error());
+    }
     const std::optional<ListenAddress> at =
         query_address(query_addresses_, osc::effective_config(osc_, link_.osc_config.read().get()));
     if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
@@ -298,7 +328,7 @@ class Playing {
       network_.stop();
       console_.stop();
     }
-    return finish(options_, engine_, ended);
+    return finish(options_, engine_, ended, run_file_ ? &*run_file_ : nullptr);
   }
 
   const PlayOptions& options_;
@@ -314,6 +344,7 @@ class Playing {
   lighting::LightingOutput lights_;
   console::ConsoleServer console_;
   std::optional<SceneLoader> scene_loader_;
+  std::optional<RunFile> run_file_;
   oscquery::QueryServer query_;
 };
 
@@ -376,6 +407,8 @@ Result<void> check_options(const PlayOptions& options) {
   if (Result<void> display = check_display_options(options.display, options.duration); !display) return display;
   if (options.recover && options.display.offline())
     return Error{"--recover can't be combined with --render and --screenshot; leave them out"};
+  if (!options.run.out.empty() && options.display.offline())
+    return Error{"--out can't be combined with --render and --screenshot; leave them out"};
   return {};
 }
 

@@ -44,6 +44,13 @@ struct SaveSceneOptions {
   bool overwrite = false;  ///< Replace the file if it exists.
 };
 
+/// Values that are set after the scene has run, and the file of its output.
+struct RunOptions {
+  std::vector<std::string> params;  ///< NAME=VALUE: parameters of the scene.
+  std::vector<std::string> sets;    ///< PATH=VALUE
+  std::string out;                  ///< File or folder for recorded columns and results; empty: none.
+};
+
 /// Options of `play`, as typed.
 struct PlayOptions {
   std::string scene = "scripts/arms.lua";
@@ -55,9 +62,9 @@ struct PlayOptions {
   std::optional<std::uint64_t> ticks;
   std::optional<double> duration;
   std::optional<std::uint64_t> seed;
-  int threads = 1;                ///< Number of threads for the physics.
-  std::vector<std::string> sets;  ///< PATH=VALUE
-  std::string preset;             ///< Recalled after the scene has run, before `sets`.
+  int threads = 1;  ///< Number of threads for the physics.
+  RunOptions run;
+  std::string preset;  ///< Recalled after the scene has run, before the values of `run`.
   std::vector<std::string> package_paths;
   std::string root;  ///< MJCF: see ImportOptions.
   SaveSceneOptions save_scene;

@@ -1,0 +1,128 @@
+// Declares the options of `limber sweep` and `limber evolve` with CLI11.
+#include "app/cli/experiment_options.h"
+
+#include <optional>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include "app/cli/play_options.h"
+#include "base/text.h"
+
+namespace limber::app {
+
+namespace {
+
+constexpr const char* kSweepExamples =
+    "The scene declares its numbers: result(\"distance\", function() return body.position.x end).\n"
+    "  limber sweep my.lua --param rate=0.1:1:0.1 --param depth=0.2,0.4 --seeds 1:5 --out rates.csv\n"
+    "  limber sweep my.lua --param rate=0.1:1/10    ten values from 0.1 to 1; the table goes to stdout\n"
+    "  limber sweep my.lua --samples 200 --out all.csv  200 points within the ranges of all parameters\n"
+    "  limber sweep my.lua --samples 200 --out all.csv --resume  continue after Ctrl+C or a crash\n"
+    "A row has the values, the seed, the results, the state hash and the command that plays it. Neither the\n"
+    "order nor the numbers depend on --jobs. An evaluation that fails has the reason in the column error.\n"
+    "Exit codes: 1 the scene has an error, all evaluations failed, or Ctrl+C; 3 the table can't be written.";
+
+constexpr const char* kEvolveExamples =
+    "The scene declares parameters with ranges, and results; a result with a range is a descriptor.\n"
+    "  limber evolve my.lua --maximize distance     CMA-ES: the best values, in the folder my_evolve\n"
+    "  limber evolve my.lua --maximize distance --descriptor height --descriptor effort\n"
+    "                                               MAP-Elites: the best for each cell of height and effort\n"
+    "  limber evolve my.lua --maximize distance --resume  continue after Ctrl+C or a crash\n"
+    "The file elites.csv in the folder has a row for each elite, with the command that plays it.\n"
+    "The result doesn't depend on --jobs and interruptions.\n"
+    "Exit codes: 1 the scene has an error, nothing was found, or Ctrl+C; 3 the folder can't be written.";
+
+CLI::Validator number_above(double limit, double max, const char* what) {
+  return CLI::Validator(
+      [limit, max, what](std::string& text) {
+        const std::optional<double> number = parse_number(text);
+        return number && *number > limit && *number <= max
+                   ? std::string()
+                   : fmt::format("'{}' must be {} above {} and at most {}", text, what, number_text(limit),
+                                 number_text(max));
+      },
+      "", "number");
+}
+
+CLI::Validator count() {
+  return CLI::Validator([](std::string& text) { return whole_number_fault(text); }, "", "count");
+}
+
+void add_common(CLI::App& app, ExperimentOptions& o, const char* params) {
+  app.add_option("scene", o.scene, "The scene.")->type_name("SCENE.lua")->required();
+  app.add_option("--param", o.params, params)->type_name("NAME=VALUES")->allow_extra_args(false);
+  app.add_option("--seeds", o.seeds, "Seeds of each point: FIRST:LAST, or a list such as 1,2,7; default 1.")
+      ->type_name("SEEDS");
+  app.add_option("--duration", o.duration, "Simulated seconds of an evaluation; default 10.")
+      ->type_name("S")
+      ->check(number_above(0, 1e9, "a time in seconds"));
+  app.add_option("--jobs", o.jobs, "Number of processes; default: one per core. The result is the same for any.")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  app.add_option("--time-limit", o.time_limit,
+                 "Seconds of real time after which an evaluation is stopped; tried three times; default 300.")
+      ->type_name("S")
+      ->check(number_above(0, 1e6, "a time in seconds"));
+  CLI::Option* resume = app.add_flag("--resume", o.resume, "Continue what an interrupted run has left.");
+  app.add_flag("--overwrite", o.overwrite, "Replace existing output.")->excludes(resume);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app, SweepCommand& command) {
+  CLI::App* sweep = app.add_subcommand("sweep", "Run a scene with many values of its parameters; a table of results.");
+  sweep->footer(kSweepExamples);
+  add_common(*sweep, command.common,
+             "Values of a parameter: MIN:MAX:STEP, MIN:MAX/N, MIN:MAX, or a list; may be repeated. Default: the "
+             "ranges of all parameters.");
+  sweep
+      ->add_option("--design", command.design,
+                   "The points: grid (all combinations), random, latin (a Latin hypercube), sobol; default: grid, or "
+                   "sobol with --samples.")
+      ->type_name("grid|random|latin|sobol")
+      ->check(CLI::IsMember({"grid", "random", "latin", "sobol"}));
+  sweep->add_option("--samples", command.samples, "Number of points of random, latin and sobol.")
+      ->type_name("N")
+      ->check(count());
+  sweep->add_option("--design-seed", command.design_seed, "Seed of the points of random and latin; default 1.")
+      ->type_name("N")
+      ->check(count());
+  sweep
+      ->add_option("--out", command.common.out,
+                   "The table: CSV, or JSON Lines if the name ends with .jsonl; default: CSV to stdout.")
+      ->type_name("FILE");
+}
+
+void add_evolve(CLI::App& app, EvolveCommand& command) {
+  CLI::App* evolve = app.add_subcommand("evolve", "Search for the parameters of a scene with the best result.");
+  evolve->footer(kEvolveExamples);
+  add_common(*evolve, command.common,
+             "Range of a parameter, MIN:MAX, or a list of values; may be repeated. Default: the ranges of all "
+             "parameters.");
+  CLI::Option* maximize =
+      evolve->add_option("--maximize", command.maximize, "Search for the largest value of this result.")
+          ->type_name("RESULT");
+  evolve->add_option("--minimize", command.minimize, "Search for the smallest value of this result.")
+      ->type_name("RESULT")
+      ->excludes(maximize);
+  evolve
+      ->add_option("--descriptor", command.descriptors,
+                   "A result with a range: keep the best for each of its cells (MAP-Elites); may be repeated.")
+      ->type_name("RESULT")
+      ->allow_extra_args(false);
+  evolve->add_option("--generations", command.generations, "Number of generations; default 100.")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1000000));
+  evolve
+      ->add_option("--population", command.population,
+                   "Points per generation; default: 4 + 3 ln(number of parameters), with descriptors 100.")
+      ->type_name("N")
+      ->check(CLI::Range(4, 100000));
+  evolve->add_option("--search-seed", command.search_seed, "Seed of the search; default 1.")
+      ->type_name("N")
+      ->check(count());
+  evolve->add_option("--out", command.common.out, "Folder of the results; default: SCENE_evolve.")->type_name("DIR");
+}
+
+}  // namespace limber::app

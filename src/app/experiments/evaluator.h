@@ -1,0 +1,32 @@
+// Evaluator: runs a scene with given parameters and a seed, as `limber play --fast` does, and computes its results.
+// [one thread]
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "engine/engine_options.h"
+#include "experiments/evaluation.h"
+
+namespace limber::engine {
+class Engine;
+}  // namespace limber::engine
+
+namespace limber::app {
+
+class Evaluator {
+ public:
+  /// Runs the scene's file once to read what it declares; the error is that of the scene.
+  Result<experiments::SceneInfo> set_up(experiments::WorkerSetup setup);
+  /// Simulates. Requires a successful set_up(). The state hash is that of `limber play` with the same values.
+  experiments::Outcome evaluate(const experiments::Evaluation& evaluation);
+
+ private:
+  engine::EngineOptions options_of(const experiments::Evaluation& evaluation) const;
+
+  experiments::WorkerSetup setup_;
+  experiments::SceneInfo scene_;
+  std::vector<const experiments::ParameterInfo*> parameters_;  // of each value of an evaluation
+};
+
+}  // namespace limber::app
