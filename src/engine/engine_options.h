@@ -34,8 +34,8 @@ struct EngineOptions {
   std::string lock_folder;
   std::string recovery_folder;  ///< Folder of the recovery file, written while the show plays; empty: no recovery.
   std::chrono::milliseconds recovery_interval = RecoverySaver::kInterval;
-  bool recover = false;       ///< `--recover`: restores the values of a run that crashed.
-  int threads = 1;            ///< Threads for each physics step. The result is the same for any number.
+  bool recover = false;  ///< `--recover`: restores the values of a run that crashed.
+  int threads = 1;       ///< Threads for each physics step. The result is the same for any number.
   /// `--param`: values of the scene's own parameters, as messages to /scene/NAME; applied before `sets`.
   std::vector<Message> params;
   std::vector<Message> sets;  ///< `--set`: overrides, applied before the first tick and after the preset.

@@ -106,7 +106,7 @@ def _is_member_initializer(head):
 
 
 # The namespaces of the modules are not part of a function's name.
-NAMESPACES = re.compile(r"^limber::(sim::(bullet|collision|solver)::|(model|sim|script|engine|osc|oscquery|lighting|console|panel|render|exporter|app)::)?")
+NAMESPACES = re.compile(r"^limber::(sim::(bullet|collision|solver)::|(model|sim|script|engine|osc|oscquery|lighting|console|panel|render|exporter|experiments|app)::)?")
 
 
 def functions_of(tokens):
