@@ -55,9 +55,10 @@ void load_meshes(MjcfFile& file, MeshLoader& loader) {
     std::erase_if(body.geoms, [&](MjcfGeom& geom) { return !loader.load(geom.shape, owner); });
     // a mesh is one hull in MuJoCo, also if its file has several objects
     for (MjcfGeom& geom : body.geoms) {
-      if (!has_pieces(geom.shape.shape)) continue;
-      std::shared_ptr<const MeshModel>& whole = joined[geom.shape.shape.mesh];
-      if (whole == nullptr) whole = without_pieces(*geom.shape.shape.mesh);
+      const std::shared_ptr<const MeshModel>& mesh = geom.shape.shape.mesh;
+      if (mesh == nullptr || (mesh->pieces.empty() && mesh->collision_problems.empty())) continue;
+      std::shared_ptr<const MeshModel>& whole = joined[mesh];
+      if (whole == nullptr) whole = without_pieces(*mesh);
       geom.shape.shape.mesh = whole;
     }
   }

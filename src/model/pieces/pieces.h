@@ -25,7 +25,7 @@ PlacedShape piece_of(const Hull& complete, const HullLimits& limits = {});
 /// Sets the pieces of a mesh, in their order, and the error and the volume of its hulls. [any]
 void set_pieces(MeshModel& mesh, std::span<const Hull> hulls, const HullLimits& limits = {});
 
-/// Returns a mesh that collides as one hull. [any]
+/// Returns a mesh that collides as one hull, without problems. [any]
 std::shared_ptr<const MeshModel> without_pieces(const MeshModel& mesh);
 
 /// True if each edge is used equally often in both directions, as in the surface of one or more solids that may touch.
