@@ -20,6 +20,7 @@ constexpr std::array kUnits = {
     Unit{"Hz", "per second"},
     Unit{"m/s", "meter per second"},
     Unit{"m/s²", "meter per second squared"},
+    Unit{"m/s³", "meter per second cubed"},
     Unit{"rad/s", "radian per second"},
     Unit{"m/s | rad/s", "meter per second along, radian per second about the axis"},
     Unit{"m | rad", "meter along, radian about the axis"},

@@ -3,11 +3,16 @@
 
 #include "base/memory/archive.h"
 #include "sim/bullet/island_world.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
 
 namespace limber::sim {
+
+Sensing::Sensing(World& world) : world_(world), parts_(world), mocap_(std::make_unique<MocapList>(world)) {}
+
+Sensing::~Sensing() = default;
 
 std::span<Sensor* const> Sensing::sensors() {
   if (sensor_count_ == 0) return {};
@@ -45,6 +50,7 @@ void Sensing::end_tick() {
 
 void Sensing::serialize(Archive& archive) {
   archive.serialize_all(contacts_, state_.zone_events[0], state_.zone_events[1]);
+  mocap_->serialize(archive);
   if (archive.loading()) parts_.invalidate_bodies();
 }
 

@@ -1,9 +1,10 @@
-// Sensing: the contacts of a world, its sensors, and the search for parts by rays and spheres. [sim]
+// Sensing: the contacts of a world, its sensors, the search for parts by rays and spheres, and motion capture. [sim]
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,7 @@ class Archive;
 
 namespace limber::sim {
 
+class MocapList;
 class Sensor;
 class World;
 
@@ -28,11 +30,15 @@ struct ZoneEvent {
 
 class Sensing {
  public:
-  explicit Sensing(World& world) : world_(world), parts_(world) {}
+  explicit Sensing(World& world);
+  ~Sensing();
+  Sensing(const Sensing&) = delete;
+  Sensing& operator=(const Sensing&) = delete;
 
   Contacts& contacts() { return contacts_; }
   const Contacts& contacts() const { return contacts_; }
   PartTree& parts() { return parts_; }
+  MocapList& mocap() const { return *mocap_; }
 
   /// Counts the sensors; called by each.
   void note_sensor(int change) { sensor_count_ += change; }
@@ -60,6 +66,7 @@ class Sensing {
   World& world_;
   Contacts contacts_;
   PartTree parts_;
+  std::unique_ptr<MocapList> mocap_;
   int sensor_count_ = 0;
   std::vector<Sensor*> sensors_;  // in the order of bodies; valid for this version of the store
   std::uint64_t structure_version_ = 0;

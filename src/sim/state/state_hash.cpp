@@ -9,6 +9,7 @@
 #include "sim/bullet/bullet.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/tendons/tendon_list.h"
@@ -79,7 +80,7 @@ std::uint64_t World::state_hash() const {
   for (const auto& gear : gears().list()) numbers.add_word(persistent_hash(store_, gear->id()));
   for (const auto& fixture : visuals_->fixtures().list()) numbers.add_word(node_hash(store_, fixture->id()));
   numbers.add(time(), static_cast<double>(state_.tick), static_cast<double>(seed()));
-  std::uint64_t hash = numbers.value();
+  std::uint64_t hash = sensing_->mocap().state_hash(numbers.value());
   for (const auto& body : bodies()) hash = body_hash(*body, hash);
   return behaviors_->state_hash(hash);
 }

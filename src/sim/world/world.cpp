@@ -9,6 +9,7 @@
 #include "sim/bullet/island_world.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/sensors/readouts.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/tendons/tendon_list.h"
@@ -170,6 +171,7 @@ World::~World() { clear(); }
 void World::clear() {
   panic_.end();
   behaviors_->clear();
+  sensing_->mocap().clear();
   gears().clear();
   tendons().clear();
   bodies_.objects().clear();
@@ -250,7 +252,10 @@ void World::flush() {
 TickTimes World::step() {
   if (thread_pool_ != nullptr && bullet_->getNumCollisionObjects() > kDefaultGrain) thread_pool_->wake();
   const double start_time = system::clock_seconds();
-  if (!panic_.on()) behaviors_->step(timestep());
+  if (!panic_.on()) {
+    sensing_->mocap().step(timestep());
+    behaviors_->step(timestep());
+  }
   const double flush_time = system::clock_seconds();
   apply_changes(*this);
   part_inputs_.kinematics.begin_tick(timestep());
@@ -262,13 +267,13 @@ TickTimes World::step() {
   overlaps_.log();
   if (panic_.on()) part_inputs_.forces.discard();
   visuals_->overlay().capture_forces(part_inputs_.forces);
-  sensing_.begin_tick();
+  sensing_->begin_tick();
   part_inputs_.forces.apply();
   const double physics_time = system::clock_seconds();
   const solver::DirectCounts previous_counts = bullet_->direct_counts();
   bullet_->step(timestep() / substeps(), substeps());
   const double readout_time = system::clock_seconds();
-  sensing_.end_contacts();
+  sensing_->end_contacts();
   store_.mutable_values(id_, *world_properties().time)[0] = state_.end_tick(timestep(), time());
   store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
   publish_solver_counts(*this, previous_counts);
@@ -276,7 +281,7 @@ TickTimes World::step() {
   awake_bodies_.publish();
   tendons().publish();
   part_inputs_.kinematics.end_tick();
-  sensing_.end_tick();
+  sensing_->end_tick();
   gears().warn_slipping();
   stability_.end_tick();
   visuals_->camera_moves().step();
@@ -301,12 +306,12 @@ void World::after_substep(btDynamicsWorld* bullet, btScalar h) {
     world.panic_.damp(static_cast<double>(h));
     world.bullet_->refresh_joints();
   }
-  world.sensing_.end_substep(static_cast<double>(h));
+  world.sensing_->end_substep(static_cast<double>(h));
   world.stability_.check_parts(static_cast<double>(h));
 }
 
 void World::serialize(Archive& archive) {
-  archive.serialize_all(state_, stability_, panic_, store_, sensing_, visuals_->camera_moves(), part_inputs_.forces);
+  archive.serialize_all(state_, stability_, panic_, store_, *sensing_, visuals_->camera_moves(), part_inputs_.forces);
   for (const auto& body : bodies()) body->serialize(archive);
   archive.serialize_all(gears(), tendons(), *behaviors_);
   if (!archive.loading()) return;

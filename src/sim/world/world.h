@@ -106,7 +106,7 @@ class World {
   void restart_time(std::uint64_t tick = 0, double time = 0);
 
   Kinematics& kinematics() { return part_inputs_.kinematics; }
-  Sensing& sensing() { return sensing_; }
+  Sensing& sensing() const { return *sensing_; }
   StabilityCheck& stability() { return stability_; }
   const StabilityCheck& stability() const { return stability_; }
   /// Parts that overlap in their first tick; reported in the next step.
@@ -150,7 +150,7 @@ class World {
   std::unique_ptr<BehaviorList> behaviors_;
   std::unique_ptr<Visuals> visuals_;
   WorldTransaction transaction_{*this};
-  Sensing sensing_{*this};
+  std::unique_ptr<Sensing> sensing_ = std::make_unique<Sensing>(*this);
   StabilityCheck stability_{*this};
   OverlapReport overlaps_;
   AwakeBodies awake_bodies_{*this};
