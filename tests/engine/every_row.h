@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "engine/everything.h"
 #include "properties/catalog.h"
+#include "sim/mocap/mocap_source.h"
 #include "sim/world/world.h"
 #include "support/world_objects.h"
 
@@ -48,6 +49,8 @@ inline std::vector<Sample> samples(const Store& store) {
       {&sim::touch_table(), arm + "/sensor/skin", {}, "sim:body('arm'):sensor('skin')"},
       {&sim::Gear::table(), "/physics/gear/rack", {}, "sim:gear('rack')"},
       {&sim::Tendon::table(), arm + "/tendon/cord", {}, "sim:body('arm'):tendon('cord')"},
+      {&sim::MocapSource::table(), "/physics/mocap/dancer", {}, "sim:mocap('dancer')"},
+      {&sim::MocapJoint::table(), "/physics/mocap/dancer/joint/hips", {}, "sim:mocap('dancer'):joint('hips')"},
       {&store.table(find_property(store, "/scene").value().node), "/scene", {}, "params"},
   };
 }

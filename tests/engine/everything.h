@@ -17,6 +17,7 @@ for i, kind in ipairs { "revolute", "prismatic", "spherical", "planar", "floatin
 end
 sim:add_gear(body:joint("revolute"), body:joint("prismatic"), 0.1, { name = "rack" })
 body:add_tendon("cord", { points = { { "base", 0, 0, 0.1 }, { "part_revolute", 0, 0, 0.1 } }, rest_length = 50 })
+sim:add_mocap("dancer", { source = "osc", joints = { "hips", "head" }, bones = { { "hips", "head" } } })
 body:add_part("hat", shape, { position = vec3(2, 0, 1) })
 body:add_joint("weld", "part_floating", "hat", { type = "fixed" })
 local hat = body:part("hat")

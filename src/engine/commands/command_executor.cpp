@@ -14,6 +14,7 @@ namespace {
 // Costs in units of LiveInput::kPassWork: a rejection or an answer, a message to the scene's handlers.
 constexpr int kTextWork = 7;
 constexpr int kHandlerWork = 3;
+constexpr std::size_t kArgumentsPerWork = 16;  // of a long message, such as a frame of motion capture
 }  // namespace
 
 CommandExecutor::Execution CommandExecutor::execute(Message& message, const CommandOrigin& origin,
@@ -29,8 +30,8 @@ CommandExecutor::Execution CommandExecutor::execute(Message& message, const Comm
   if (outcome.kind == Outcome::Kind::take_request) outcome = source.request_take(message);
   report(outcome, message, origin);
   const bool has_handlers = session.scene != nullptr && session.scene->has_handlers();
-  Execution execution{static_cast<int>(session.dispatcher.writes().size()), rewind_request.has_value(),
-                      outcome.kind == Outcome::Kind::applied};
+  const std::size_t work = session.dispatcher.writes().size() + message.args.size() / kArgumentsPerWork;
+  Execution execution{static_cast<int>(work), rewind_request.has_value(), outcome.kind == Outcome::Kind::applied};
   if (outcome.kind != Outcome::Kind::applied) execution.work += kTextWork;
   if (has_handlers) execution.work += kHandlerWork;
   if (execution.rewound) return execution;

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/shapes/shape.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
@@ -174,6 +175,8 @@ Outcome MessageDispatcher::execute(const Message& message) {
 
 Outcome MessageDispatcher::execute_one(const Message& message) {
   writes_.clear();
+  if (const std::optional<Result<void>> frame = world_.sensing().mocap().accept(message))
+    return *frame ? Outcome{} : Outcome::rejected(frame->error());
   std::array<char, 96> buffer;
   const auto found = entries_.find(normalized_address(message.address, buffer));
   if (found == entries_.end()) return execute_path(message);
@@ -245,7 +248,7 @@ Outcome MessageDispatcher::execute_path(const Message& message) {
 Outcome MessageDispatcher::unknown_path(std::string_view address, const std::string& error) {
   const bool shape = address.starts_with("/visuals/shape/") && std::ranges::count(address, '/') > 3;
   const bool is_own_path = shape || address.starts_with("/physics/body/") || address.starts_with("/physics/group/") ||
-                           !address.starts_with("/");
+                           address.starts_with("/physics/mocap/") || !address.starts_with("/");
   if (is_own_path) return Outcome::unknown(hints_.consume() ? find_property(store_, address).error() : error);
   return Outcome::unknown(
       fmt::format("there is no address {}{}", printable(address), query_handler_.address_hint(address, addresses_)));

@@ -280,10 +280,11 @@ bool SceneDiff::empty() const {
   const bool same_objects =
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
   const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
-  const bool none_removed =
-      all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears, removed_tendons);
+  const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears,
+                                     removed_tendons, mocap.removed);
   return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears) &&
-         all_empty(tendons) && fixtures.empty() && std::ranges::all_of(behaviors, all_empty);
+         all_empty(tendons) && fixtures.empty() && all_empty(mocap.sources) &&
+         std::ranges::all_of(behaviors, all_empty);
 }
 
 std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
@@ -362,6 +363,19 @@ void compare_gears(const SceneSpec& before, const SceneSpec& now, SceneDiff& out
   }
 }
 
+void compare_mocap(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
+  for (const MocapDescription& source : now.mocap) {
+    const MocapDescription* const old_source = find_named(before.mocap, source.name);
+    const bool same_setup = old_source != nullptr && *old_source->setup == *source.setup;
+    out.mocap.sources.push_back({old_source != nullptr, same_setup,
+                                 old_source != nullptr && old_source->joints == source.joints,
+                                 mask_to_set(old_source == nullptr ? nullptr : &old_source->values, source.values)});
+  }
+  for (const MocapDescription& old_source : before.mocap) {
+    if (find_named(now.mocap, old_source.name) == nullptr) out.mocap.removed.push_back(old_source.name);
+  }
+}
+
 const TendonDescription* find_tendon(const SceneSpec& spec, const TendonDescription& wanted) {
   const auto found = std::ranges::find_if(spec.tendons, [&](const TendonDescription& tendon) {
     return tendon.body == wanted.body && tendon.name == wanted.name;
@@ -422,6 +436,7 @@ SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
   compare_gears(before, now, out);
   compare_tendons(before, now, out);
   compare_fixtures(before, now, out);
+  compare_mocap(before, now, out);
   compare_behaviors(before, now, out);
   return out;
 }

@@ -82,6 +82,20 @@ struct FixtureDiffs {
   }
 };
 
+/// Changes of a source of motion capture. One with another setup is made again.
+struct MocapDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool same_setup = true;     ///< It has the same file or messages, axes, joints and bones.
+  bool same_joints = true;    ///< The script uses the same joints.
+  std::uint64_t changed = 0;  ///< Properties to set.
+
+  bool empty() const { return in_old_spec && same_setup && same_joints && changed == 0; }
+};
+struct MocapDiffs {
+  std::vector<MocapDiff> sources;    ///< For each new source.
+  std::vector<std::string> removed;  ///< Names of removed ones.
+};
+
 struct SceneDiff {
   std::uint64_t world = 0;                                    ///< Properties of the world to set.
   std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
@@ -104,6 +118,7 @@ struct SceneDiff {
   /// Removed tendons, by the names of their bodies and their own.
   std::vector<std::pair<std::string, std::string>> removed_tendons;
   FixtureDiffs fixtures;
+  MocapDiffs mocap;
   bool order_changed = false;  ///< The order of the behaviors differs.
 
   bool empty() const;

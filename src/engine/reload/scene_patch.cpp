@@ -10,6 +10,7 @@
 #include "engine/reload/behavior_patch.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
 #include "sim/state/rebuild.h"
@@ -112,6 +113,7 @@ class PatchApplier {
     apply_gears();
     apply_tendons();
     apply_fixtures();
+    apply_mocap();
     apply_behaviors(patch_, bodies_, saved_behaviors_);
     for (const std::size_t removed : patch_.diff.removed_shapes) {
       if (sim::Shape* const shape = find_alive<sim::Shape>(patch_.world, objects.shapes[removed]))
@@ -277,6 +279,35 @@ class PatchApplier {
       order.push_back(live);
     }
     fixtures.move_to_front(order);
+  }
+
+  // A source with another setup is made again; the joints that the script uses are added to the others.
+  void apply_mocap() {
+    sim::MocapList& sources = patch_.world.sensing().mocap();
+    for (const std::string& name : patch_.diff.mocap.removed) {
+      if (const sim::MocapSource* const removed = sources.find(name)) sources.remove(*removed);
+    }
+    for (const MocapDescription& now : patch_.now.mocap) {  // all of them first: a new one may receive their messages
+      const sim::MocapSource* const live = sources.find(now.name);
+      if (live != nullptr && !(*live->setup() == *now.setup)) sources.remove(*live);
+    }
+    std::vector<sim::MocapSource*> order;
+    for (std::size_t i = 0; i < patch_.now.mocap.size(); i++) {
+      const MocapDescription& now = patch_.now.mocap[i];
+      const NodeId source = patch_.candidate.sensing().mocap().list()[i]->id();
+      sim::MocapSource* live = sources.find(now.name);
+      std::uint64_t changed = patch_.diff.mocap.sources[i].changed;
+      if (live == nullptr) {
+        const Result<sim::MocapSource*> added = sources.add(now.name, now.setup);
+        LIMBER_CHECK(added.ok());
+        live = *added;
+        changed = described_mask(sim::MocapSource::table());
+      }
+      for (const std::string& joint : now.joints) (void)live->expect(joint);
+      set_properties(source, live->id(), changed);
+      order.push_back(live);
+    }
+    sources.move_to_front(order);
   }
 
   static bool same_points(const sim::Tendon& tendon, const std::vector<sim::Tendon::Point>& points) {

@@ -6,6 +6,7 @@
 
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/shape_list.h"
 #include "sim/state/body_trees.h"
@@ -172,6 +173,11 @@ SceneSpec describe(const sim::World& world) {
   for (const auto& fixture : world.visuals().fixtures().list())
     out.fixtures.push_back(
         {fixture->name(), fixture->shared_profile(), fixture->targets(), spec_values_of(world.store(), fixture->id())});
+  for (const auto& source : world.sensing().mocap().list()) {
+    MocapDescription& description = out.mocap.emplace_back(MocapDescription{source->name(), source->setup(), {}, {}});
+    for (const auto& joint : source->joints()) description.joints.push_back(joint->name());
+    description.values = spec_values_of(world.store(), source->id());
+  }
   for (const sim::BehaviorGroup* group : world.behaviors().groups()) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
                           spec_values_of(world.store(), group->id())});

@@ -10,6 +10,7 @@
 
 #include "sim/behavior/behavior_list.h"
 #include "sim/fixtures/fixture.h"
+#include "sim/mocap/mocap_setup.h"
 #include "sim/sensors/sensor.h"
 #include "sim/world/joint.h"
 #include "sim/world/world.h"
@@ -109,6 +110,13 @@ struct FixtureDescription {
   std::vector<sim::FixtureTarget> targets;
   SpecValues values;
 };
+
+struct MocapDescription {
+  std::string name;
+  std::shared_ptr<const sim::MocapSetup> setup;
+  std::vector<std::string> joints;
+  SpecValues values;
+};
 struct BodyDescription {
   std::string name;
   SpecValues values;
@@ -131,6 +139,7 @@ struct SceneSpec {
   std::vector<GearDescription> gears;
   std::vector<TendonDescription> tendons;
   std::vector<FixtureDescription> fixtures;
+  std::vector<MocapDescription> mocap;
   std::vector<GroupDescription> groups;
   std::vector<std::string> behavior_order;  ///< BehaviorOrder::keys()
 };
