@@ -44,6 +44,10 @@
 ---A fixture aims at parts and points within the limits of its motors, and its values are sent to the lights.
 ---[Lighting](../../howto/lighting.md) shows how to use them.
 
+---@page mocap Motion capture: dancers from BVH files and OSC, their joints, and bodies that follow them.
+---A dancer is a node with joints, whose places, rotations and features are readouts. [Motion
+---capture](../../howto/mocap.md) shows how to use them.
+
 ---@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, tendons, behaviors, gears and fixtures.
 ---A list such as `body.parts` has numbers from 1 to `#body.parts`. Called like a function, with or without a pattern, it
 ---gives the objects one after the other: `for part in body:parts("leg*") do … end`. A pattern has `*` (any text), `?` (one

@@ -9,6 +9,7 @@
 #include "sim/behavior/behavior_list.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
+#include "sim/mocap/mocap_list.h"
 #include "sim/sensors/sensor_list.h"
 #include "sim/shapes/bounds.h"
 #include "sim/shapes/shape_list.h"
@@ -36,7 +37,9 @@ enum Kind : std::int32_t {
   gears,
   sensors,
   tendons,
-  fixtures
+  fixtures,
+  mocap_sources,
+  mocap_joints
 };
 
 // The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
@@ -54,6 +57,15 @@ std::int32_t item(ScriptContext& c, std::span<T* const> list, std::int32_t i) {
   return c.set_id(at < list.size() ? list[at]->id() : NodeId{});
 }
 
+std::int32_t list_in_body(ScriptContext& c, const sim::Body& body, std::int32_t kind, std::int32_t i) {
+  if (kind == behaviors) return item(c, body.behaviors().list(), i);
+  if (kind == sensors) return item(c, body.sensors().list(), i);
+  if (kind == tendons) return item<sim::Tendon>(c, c.world->tendons().of(body), i);
+  if (kind == parts) return item(c, body.parts(), i);
+  if (kind == joints) return item(c, body.joints(), i);
+  return item(c, body.motors(), i);
+}
+
 std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_t i) {
   if (kind == bodies) return item(c, c.world->bodies(), i);
   if (kind == shapes) return item(c, c.world->shapes().list(), i);
@@ -63,6 +75,11 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
     const std::vector<sim::BehaviorGroup*> all = c.world->behaviors().groups();
     return item<sim::BehaviorGroup>(c, all, i);
   }
+  if (kind == mocap_sources) return item(c, c.world->sensing().mocap().list(), i);
+  if (kind == mocap_joints) {
+    const sim::MocapSource* const source = object_of<sim::MocapSource>(c, id);
+    return source == nullptr ? kRemoved : item(c, source->joints(), i);
+  }
   if (const sim::Behavior* behavior = behavior_of(c, id)) {
     c.world->behaviors().update_members();
     if (kind == parts) return item(c, behavior->parts(), i);
@@ -71,12 +88,7 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   }
   const sim::Body* body = object_of<sim::Body>(c, id);
   if (body == nullptr) return kRemoved;
-  if (kind == behaviors) return item(c, body->behaviors().list(), i);
-  if (kind == sensors) return item(c, body->sensors().list(), i);
-  if (kind == tendons) return item<sim::Tendon>(c, c.world->tendons().of(*body), i);
-  if (kind == parts) return item(c, body->parts(), i);
-  if (kind == joints) return item(c, body->joints(), i);
-  return item(c, body->motors(), i);
+  return list_in_body(c, *body, kind, i);
 }
 
 // an object of a list by name
@@ -144,6 +156,8 @@ std::int32_t owner(void* c, std::int32_t slot, std::int32_t generation) {
   ScriptContext& context = context_of(c);
   // the objects of a body are in its store groups: parts, joints …
   const Store& store = context.world->store();
+  if (const sim::MocapJoint* joint = object_of<sim::MocapJoint>(context, id_of(slot, generation)))
+    return context.set_id(joint->source().id());
   const NodeId above = store.parent(store.parent(id_of(slot, generation)));
   return context.set_id(object_of<sim::Body>(context, above) == nullptr ? NodeId{} : above);
 }
@@ -191,6 +205,10 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
     const sim::FixtureList& all = world.visuals().fixtures();
     return id_or_error(context, all.find(wanted), all.list(), "fixture", "there is", wanted);
   }
+  if (kind == mocap_sources) {
+    const sim::MocapList& all = world.sensing().mocap();
+    return id_or_error(context, all.find(wanted), all.list(), "mocap source", "there is", wanted);
+  }
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
@@ -207,7 +225,7 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
   // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors, tendons; then shapes, gears,
-  // groups, fixtures; removed objects last.
+  // groups, fixtures, sources of motion capture with their joints; removed objects last.
   const ScriptContext& context = context_of(c);
   const sim::World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -248,6 +266,14 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
   }
   if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) {
     return kShapes * 1.125 + static_cast<double>(index_in(world.gears().list(), gear));
+  }
+  if (const sim::MocapSource* source = object_of<sim::MocapSource>(context, id)) {
+    return kShapes * 1.375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), source));
+  }
+  if (const sim::MocapJoint* joint = object_of<sim::MocapJoint>(context, id)) {
+    const sim::MocapSource& source = joint->source();
+    return kShapes * 1.375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), &source)) + 1 +
+           static_cast<double>(index_in(source.joints(), joint));
   }
   if (const sim::Shape* shape = object_of<sim::Shape>(context, id)) {
     return kShapes + static_cast<double>(index_in(world.shapes().list(), shape));

@@ -24,6 +24,7 @@
 #include "script/vm/guard.h"
 #include "script/vm/pattern_match.h"
 #include "sim/behavior/selection.h"
+#include "sim/mocap/mocap_setup.h"
 #include "sim/neighbors/neighbor_set.h"
 #include "sim/world/body.h"
 #include "sim/world/world.h"
@@ -57,6 +58,12 @@ struct WorldViews {
   sim::MassTable::View masses;
 };
 
+/// Options of a source of motion capture, as a script has given them.
+struct MocapArguments {
+  sim::MocapSetup setup;
+  std::string file, dialect, dancer, up, handed, quaternion;
+};
+
 /// Arguments that several API calls collect before the call that uses them.
 struct CollectedArguments {
   std::vector<Vec3> mesh_points;
@@ -64,6 +71,7 @@ struct CollectedArguments {
   sim::BuildOptions build;
   Message message;
   std::vector<Property> parameters;
+  MocapArguments mocap;
   std::array<sim::Selection, 5> selections;   ///< Parts, joints, motors, bodies, neighbor parts.
   std::span<std::int32_t* const> handle_ids;  ///< Slot and generation of every handle, while the handles are remapped.
 };

@@ -9,10 +9,11 @@ local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list 
   { name = "joint", list = "joints" }, { name = "motor", list = "motors" }, { name = "shape", list = "shapes" },
   { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" },
   { name = "gear", list = "gears" }, { name = "sensor", list = "sensors" },
-  { name = "tendon", list = "tendons" }, { name = "fixture", list = "fixtures" } }
+  { name = "tendon", list = "tendons" }, { name = "fixture", list = "fixtures" },
+  { name = "mocap", list = "mocaps" }, { name = "mocap_joint", list = "joints" } }
 
 -- the contents of a list are collected on first use and cached until the structure of the world changes
-local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {} }
+local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {} }
 
 local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_

@@ -173,8 +173,16 @@ std::vector<std::string> ScriptFiles::behavior_names() const {
 Result<std::string> read_script(const std::string& path) {
   std::error_code fault;
   const std::uintmax_t size = fs::file_size(path, fault);
+  if (!fault && size > kMaxBytes)
+    return Error{fmt::format("{} has {} bytes; a script can have at most 1 MB", path, size)};
+  return read_text(path, kMaxBytes);
+}
+
+Result<std::string> read_text(const std::string& path, std::uintmax_t max_bytes) {
+  std::error_code fault;
+  const std::uintmax_t size = fs::file_size(path, fault);
   if (fault || !is_file(path)) return Error{fmt::format("there is no file '{}'", path)};
-  if (size > kMaxBytes) return Error{fmt::format("{} has {} bytes; a script can have at most 1 MB", path, size)};
+  if (size > max_bytes) return Error{fmt::format("{} has {} bytes; at most {} are read", path, size, max_bytes)};
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{fmt::format("{} can't be read; check its permissions", path)};
   return std::string{std::istreambuf_iterator<char>(in), {}};

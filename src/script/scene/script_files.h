@@ -47,6 +47,8 @@ class ScriptFiles {
   std::string data_dir_;
 };
 
+/// Reads a whole file unchanged. Errors: not found, not readable, larger than `max_bytes`.
+Result<std::string> read_text(const std::string& path, std::uintmax_t max_bytes);
 /// Reads a whole script unchanged. Errors: not found, not readable, larger than 1 MB.
 Result<std::string> read_script(const std::string& path);
 

@@ -134,6 +134,26 @@ Result<std::shared_ptr<const model::Image>> Sources::image(const std::string& pa
   return images_[path] = *image;
 }
 
+Result<std::shared_ptr<const model::BvhClip>> Sources::clip(const std::string& path) {
+  contents_.try_emplace(path, 0);
+  std::shared_ptr<const model::BvhClip> clip;
+  if (const auto* before = find_known(&Sources::clips_, path)) {
+    clip = *before;
+  } else {
+    const std::string* const archived = from_archive() ? earlier_->archived_files_->content(path) : nullptr;
+    if (from_archive() && archived == nullptr)
+      return Error{fmt::format("file '{}' is not among the recorded files", path)};
+    const Result<std::string> text =
+        archived != nullptr ? Result<std::string>(*archived) : read_text(path, model::BvhClip::kMaxBytes);
+    if (!text) return Error{text.error()};
+    Result<std::shared_ptr<const model::BvhClip>> read = model::parse_bvh(*text, path);
+    if (!read) return read;
+    clip = *read;
+  }
+  contents_[path] = clip->content_hash;
+  return clips_[path] = clip;
+}
+
 SourcesRead Sources::read() const {
   SourcesRead read{found_, texts_, {}, {}};
   if (!added_.empty()) read.texts[kAddedText] = added_;

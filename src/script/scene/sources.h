@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "model/mocap/bvh.h"
 #include "model/model_library.h"
 #include "script/scene/script_files.h"
 
@@ -26,7 +27,7 @@ struct SourcesRead {
   std::map<std::string, std::string> found;   ///< Search requests and the resulting paths.
   std::map<std::string, std::string> texts;   ///< Script texts by path.
   std::map<std::string, std::string> meshes;  ///< As FileSet::found.
-  std::vector<std::string> files;             ///< Models, meshes and images.
+  std::vector<std::string> files;             ///< Models, meshes, images and motions.
 };
 
 class Sources {
@@ -55,6 +56,8 @@ class Sources {
   Result<std::shared_ptr<const model::MeshModel>> mesh(const std::string& path, const Vec3& scale,
                                                        bool concave = false);
   Result<std::shared_ptr<const model::Image>> image(const std::string& path);
+  /// Returns the motion of a BVH file.
+  Result<std::shared_ptr<const model::BvhClip>> clip(const std::string& path);
 
   /// Ends the run: drops the reference to the earlier run.
   void close() { earlier_ = nullptr; }
@@ -80,6 +83,7 @@ class Sources {
   std::map<std::string, std::shared_ptr<const model::BodyModel>> models_;
   std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes_;
   std::map<std::string, std::shared_ptr<const model::Image>> images_;
+  std::map<std::string, std::shared_ptr<const model::BvhClip>> clips_;
   std::vector<std::string> tried_;
 };
 

@@ -29,6 +29,7 @@ std::span<const std::string_view> prelude_order() {
       "sensors.lua",
       "tendons.lua",
       "fixtures.lua",
+      "mocap.lua",
       "visuals.lua",
       "callbacks.lua",
       "results.lua",

@@ -15,11 +15,19 @@ struct Title {
   std::string_view name, title;
 };
 // Titles of the top-level nodes in display order; other nodes follow.
-constexpr std::array kTitles = {
-    Title{"scene", "Scene"},       Title{"sim", "World"},           Title{"body", "Bodies"},
-    Title{"gear", "Gears"},        Title{"group", "Groups"},        Title{"visuals", "View"},
-    Title{"lighting", "Lighting"}, Title{"transport", "Transport"}, Title{"preset", "Presets"},
-    Title{"take", "Takes"},        Title{"edit", "Undo"},           Title{"osc", "OSC counters"}};
+constexpr std::array kTitles = {Title{"scene", "Scene"},
+                                Title{"sim", "World"},
+                                Title{"body", "Bodies"},
+                                Title{"gear", "Gears"},
+                                Title{"mocap", "Motion capture"},
+                                Title{"group", "Groups"},
+                                Title{"visuals", "View"},
+                                Title{"lighting", "Lighting"},
+                                Title{"transport", "Transport"},
+                                Title{"preset", "Presets"},
+                                Title{"take", "Takes"},
+                                Title{"edit", "Undo"},
+                                Title{"osc", "OSC counters"}};
 // Titles of the groups of a body's members.
 constexpr std::array kMembers = {Title{"part", "Parts"},     Title{"joint", "Joints"},
                                  Title{"motor", "Motors"},   Title{"sensor", "Sensors"},
