@@ -149,6 +149,40 @@ local function beside(name, at, x, other_velocity)
   return ball(name, at)
 end
 
+-- a dancer who stands still, and one who dances
+local film = { source = "scripts/motion/dancer.bvh", unit = "cm", speed = 0, offset = vec3(0, -100, 0) }
+local statue = sim:add_mocap("statue", film)
+film.speed = 1
+local dancer = sim:add_mocap("dancer", film)
+local kHand = statue:joint("left_hand").position + film.offset
+p = plot("mocap_attraction", { x = "distance from the joint, m", y = "force towards it, N" })
+for _, most in ipairs { 10, 30 } do
+  sweep(p, "max_force = " .. most, 0.1, 3, 59, function(x, name)
+    local body = ball(name, kHand - vec3(x, 0, 0))
+    body.root.collision_mask = 0
+    body:add_behavior("mocap_attraction", "pull", { joint = statue:joint("left_hand").number, max_force = most })
+    return body
+  end, force)
+end
+
+p = plot("mocap_body", { x = "time, s", y = "height of the part, m" })
+local figure = dancer:add_body("figure")
+for _, name in ipairs { "left_hand", "left_foot" } do
+  record(p, name, function() return figure:part(name).position.z end)
+end
+
+p = plot("mocap_target", { x = "time, s", y = "target, rad" })
+for _, smoothing in ipairs { 0.05, 0.5 } do
+  local body = sim:add_body("follower_" .. smoothing)
+  body:add_part("base", kSphere, { mass = 0, position = vec3(0, -90, 0) })
+  body:add_part("link", kSphere, { position = vec3(0.5, -90, 0) })
+  local motor = body:add_motor(body:add_joint("hinge", "base", "link"))
+  body:add_behavior("mocap_target", "copy", {
+    source = dancer.number, joint = dancer:joint("left_forearm").number, smoothing = smoothing,
+  })
+  record(p, "smoothing = " .. smoothing, function() return motor.target end)
+end
+
 p = plot("cohesion", { x = "distance, m", y = "force towards the others, N" })
 for _, min in ipairs { 0, 3 } do
   sweep(p, "min_dist = " .. min, 0.2, 12, 119, function(x, name, at)

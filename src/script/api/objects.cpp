@@ -268,11 +268,11 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     return kShapes * 1.125 + static_cast<double>(index_in(world.gears().list(), gear));
   }
   if (const sim::MocapSource* source = object_of<sim::MocapSource>(context, id)) {
-    return kShapes * 1.375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), source));
+    return kShapes * 1.4375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), source));
   }
   if (const sim::MocapJoint* joint = object_of<sim::MocapJoint>(context, id)) {
     const sim::MocapSource& source = joint->source();
-    return kShapes * 1.375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), &source)) + 1 +
+    return kShapes * 1.4375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), &source)) + 1 +
            static_cast<double>(index_in(source.joints(), joint));
   }
   if (const sim::Shape* shape = object_of<sim::Shape>(context, id)) {
