@@ -753,6 +753,123 @@ function tendon_:remove() end
 ---@field [integer] tendon
 ---@overload fun(self: body, wanted?: string|tendon|(string|tendon)[]): fun(): tendon, integer
 
+-- Motion capture.
+
+---Adds a dancer: a source of motion capture with its joints. At the top level of the scene only.
+---@param name string # A name of your choice, unique among the sources.
+---@param opts mocap_opts # `source`, and properties such as `offset`.
+---@return mocap
+function sim:add_mocap(name, opts) end
+
+---Returns a source of motion capture by name or number (-1: the last).
+---@param key string|integer|mocap # Its name, its number from 1, or -1 for the last.
+---@return mocap
+function sim:mocap(key) end
+
+---A dancer, whose joints follow received messages or a BVH file.
+---@class mocap
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field joints mocap_joint_list # read-only. Its joints, in the order in which they were found.
+---@field active boolean # default true. False: its joints stay where they are.
+---@field offset vec3like # m, -10000 .. 10000, default 0 0 0. Where the source's origin is on stage.
+---@field rotation vec3like # deg, -360 .. 360, default 0 0 0. Turns the source about its origin, by angles about x, y and z; z is vertical.
+---@field scale number # 0.001 .. 1000, default 1. Factor on the lengths of the source.
+---@field max_speed number # m/s, 0.01 .. 10000, default 20. Largest speed of a joint; it follows losses, bursts and jumps of its samples at this speed.
+---@field max_turn number # rad/s, 0.01 .. 10000, default 40. Largest angular speed of a joint.
+---@field timeout number # s, 0.02 .. 60, default 0.5. Time without frames after which the source is lost.
+---@field fade number # s, 0 .. 600, default 0. Time in which the confidence of lost joints falls to 0; 0: it stays, and the last values are held.
+---@field floor number # m, -10000 .. 10000, default 0. Height of the floor, for contact.
+---@field contact_height number # m, 0 .. 10, default 0.1. Largest height above the floor of a joint in contact.
+---@field contact_speed number # m/s, 0 .. 100, default 0.5. Largest speed of a joint in contact.
+---@field playing boolean # default true. Player: false stops the time of its file.
+---@field loop boolean # default true. Player: starts again at the end of its file.
+---@field speed number # × real time, -100 .. 100, default 1. Player: its speed; negative: backwards.
+---@field time number # s, 0 .. 1000000. Player: time in its file; can be set.
+---@field number integer # read-only. Its number among the sources, for behaviors.
+---@field duration number # read-only, s. Player: length of its file; else 0.
+---@field tracked boolean # read-only. True while frames arrive, or its file plays.
+---@field age number # read-only, s. Time since its last frame; -1: there was none.
+---@field frames integer # read-only. Number of messages that were accepted.
+---@field missing integer # read-only. Number of joints without a sample within timeout.
+---@field center vec3 # read-only, m. Mean place of its joints.
+---@field mean_speed number # read-only, m/s. Mean speed of its joints.
+---@field jerk number # read-only, m/s³. Mean change of its joints' acceleration, smoothed.
+---@field expansion number # read-only, m. Root of the mean squared distance of its joints from the center.
+---@field symmetry number # read-only. 1: its left side mirrors the right one.
+---@field contacts integer # read-only. Number of its joints on the floor.
+local mocap_ = {}
+
+---Returns a joint by name or number (-1: the last). If a source of messages has no joint of that name yet, it is expected
+---from now on, and reported when it does not arrive.
+---@param key string|integer|mocap_joint # Its name, its number from 1, or -1 for the last.
+---@return mocap_joint
+function mocap_:joint(key) end
+
+---Adds a body of kinematic parts that moves as the dancer: a capsule for each bone, with the name of the joint at its
+---end, and a ball for a joint without a parent. Other parts collide with it.
+---@param name string # A name of your choice, unique in the world.
+---@param opts? mocap_body_opts # Such as `radius`.
+---@return body
+function mocap_:add_body(name, opts) end
+
+---@class mocap_body_opts: body_opts
+---@field radius? number # default 0.04. Radius of the capsules, m.
+
+---@class mocap_opts
+---@field source? string # A BVH file (`"dance.bvh"`), `"osc"` for `/mocap/joint/pos_world` and its relatives, or `"vmc"`.
+---@field dancer? integer|string # For `"osc"`: N receives `/mocap/N/joint/…`; without it, `/mocap/joint/…`.
+---@field messages? table<string, string> # For any other dialect: words that name the arguments of each address.
+---@field joints? string[] # Expected joints; messages without names have them in this order.
+---@field bones? table[] # Parents: a list of `{ parent, child }` or `{ parent, child, length }`, m.
+---@field up? "x"|"y"|"z" # The vertical axis of the source; default "z", for files and VMC "y".
+---@field handed? "right"|"left" # default "right", for VMC "left".
+---@field unit? "m"|"cm"|"mm"|"in"|"ft"|number # default "m"; a number: length of a unit in meters.
+---@field quaternion? "wxyz"|"xyzw" # Order of quaternions of `"osc"`; default "wxyz".
+---@field active? boolean # default true. False: its joints stay where they are.
+---@field offset? vec3like # m, -10000 .. 10000, default 0 0 0. Where the source's origin is on stage.
+---@field rotation? vec3like # deg, -360 .. 360, default 0 0 0. Turns the source about its origin, by angles about x, y and z; z is vertical.
+---@field scale? number # 0.001 .. 1000, default 1. Factor on the lengths of the source.
+---@field max_speed? number # m/s, 0.01 .. 10000, default 20. Largest speed of a joint; it follows losses, bursts and jumps of its samples at this speed.
+---@field max_turn? number # rad/s, 0.01 .. 10000, default 40. Largest angular speed of a joint.
+---@field timeout? number # s, 0.02 .. 60, default 0.5. Time without frames after which the source is lost.
+---@field fade? number # s, 0 .. 600, default 0. Time in which the confidence of lost joints falls to 0; 0: it stays, and the last values are held.
+---@field floor? number # m, -10000 .. 10000, default 0. Height of the floor, for contact.
+---@field contact_height? number # m, 0 .. 10, default 0.1. Largest height above the floor of a joint in contact.
+---@field contact_speed? number # m/s, 0 .. 100, default 0.5. Largest speed of a joint in contact.
+---@field playing? boolean # default true. Player: false stops the time of its file.
+---@field loop? boolean # default true. Player: starts again at the end of its file.
+---@field speed? number # × real time, -100 .. 100, default 1. Player: its speed; negative: backwards.
+---@field time? number # s, 0 .. 1000000. Player: time in its file; can be set.
+
+---A joint of a dancer.
+---@class mocap_joint
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field mocap mocap # read-only. The dancer that it belongs to.
+---@field parent? mocap_joint # read-only. The joint that it is attached to, or nil.
+---@field length number # read-only. Distance from its parent in the first frame, or as declared in `bones`, m.
+---@field position vec3 # read-only, m. Place on stage, world axes.
+---@field rotation quat # read-only. Rotation on stage.
+---@field local_rotation quat # read-only. Rotation relative to its parent.
+---@field velocity vec3 # read-only, m/s. Velocity on stage.
+---@field speed number # read-only, m/s. Magnitude of its velocity.
+---@field age number # read-only, s. Time since its last sample; -1: there was none.
+---@field confidence number # read-only. 1: tracked; 0: not seen yet. After a loss it falls to 0 over the source's fade.
+---@field number integer # read-only. Its number among the joints of its source, for behaviors.
+---@field contact boolean # read-only. True if it is slow and near the floor.
+local mocap_joint_ = {}
+
+---The sources of motion capture of the scene.
+---@class mocap_list
+---@field [integer] mocap
+---@overload fun(self: sim, wanted?: string|mocap|(string|mocap)[]): fun(): mocap, integer
+
+---The joints of a dancer.
+---@class mocap_joint_list
+---@field [integer] mocap_joint
+---@overload fun(self: mocap, wanted?: string|mocap_joint|(string|mocap_joint)[]): fun(): mocap_joint, integer
+
 -- The world, and the callbacks of a scene.
 
 ---The world. The top level of a scene describes the objects; callbacks act on them.
@@ -761,6 +878,7 @@ function tendon_:remove() end
 ---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
+---@field mocaps mocap_list # read-only. All sources of motion capture, in the order of their creation.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Gravitational acceleration.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. Simulated time per tick.
 ---@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick; more are more accurate and slower.
