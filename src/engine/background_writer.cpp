@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/system/signals.h"
 #include "base/system/thread.h"
 
 namespace limber::engine {
@@ -62,6 +63,7 @@ void BackgroundWriter::remove(Task& task) {
 
 void BackgroundWriter::run() {
   system::name_this_thread("limber-files");
+  system::block_process_signals();
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     const auto next = std::ranges::min_element(entries_, {}, &Entry::due);

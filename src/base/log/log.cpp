@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/hash.h"
+#include "base/log/log_sink.h"
 #include "base/log/log_throttle.h"
 #include "base/log/output.h"
 #include "base/plural.h"
@@ -34,6 +35,7 @@ struct Log {
 };
 
 thread_local int silence_depth = 0;
+thread_local LogSink* sink_of_thread = nullptr;
 
 // Never destroyed, because threads that still run when the program exits may write.
 Log& the_log() {
@@ -54,9 +56,13 @@ void add_to_ring(Log& log, LogLevel level, std::string_view shown) {
 LogSilence::LogSilence() { silence_depth++; }
 LogSilence::~LogSilence() { silence_depth--; }
 
+LogSink::Scope::Scope(LogSink& sink) : previous_(std::exchange(sink_of_thread, &sink)) {}
+LogSink::Scope::~Scope() { sink_of_thread = previous_; }
+
 void log_line(LogLevel level, std::string_view text, std::string_view source) {
   if (silence_depth > 0) return;
   const std::string shown = printable(text);
+  if (sink_of_thread != nullptr) return sink_of_thread->add(level, shown);
   const auto level_index = static_cast<unsigned char>(level);
   const std::uint64_t hash = (source.empty() ? log_source(shown) : hash_bytes(source)) ^ level_index;
   Log& log = the_log();
@@ -79,6 +85,7 @@ void log_line(LogLevel level, std::string_view text, std::string_view source) {
 
 void log_print(std::string_view text, OutputTo to) {
   if (silence_depth > 0) return;
+  if (sink_of_thread != nullptr) return sink_of_thread->add(LogLevel::print, text);
   const std::string shown = printable(text);
   Log& log = the_log();
   std::uint64_t missing = 0;

@@ -10,6 +10,8 @@
 // 0.55 ulp (0.75 ulp for subnormal results of hypot); tests/base/fixed_math_reference.h lists the bounds.
 #pragma once
 
+#include <cstddef>
+
 namespace limber::fixed {
 
 /// Checks the requirements on rounding, subnormal numbers and contraction for the calling thread.
@@ -18,6 +20,10 @@ bool is_arithmetic_exact();
 void reset_arithmetic();
 /// True if LuaJIT and the other libraries call these functions as sin(), powf() and so on (libm.cpp).
 bool is_libm_replaced();
+/// Makes LuaJIT and Bullet call these functions, for a shared library: unlike a program, it can't replace the C library's
+/// functions for the process. Changes the addresses that the dynamic linker has written into these two libraries, once.
+/// Returns the number of addresses, 0 if it failed. [any]
+std::size_t bind_libm();
 
 // Trigonometric functions, in radians. The argument reduction is exact for all doubles.
 double sin(double x);

@@ -3,10 +3,12 @@
 // The dynamic linker prefers a symbol of the program to that of a shared library. LuaJIT, Bullet and the other
 // libraries therefore call these definitions too, and the results of math.sin in a script or of an angle that Bullet
 // computes depend on neither the version of the C library nor on the processor. is_libm_replaced() checks this.
+#include <array>
 #include <cmath>
 
 #include "base/math/fixed_math.h"
 #include "base/system/process.h"
+#include "base/system/symbol_binding.h"
 
 #define LIMBER_LIBM_UNARY(name)                                                \
   extern "C" double name(double x) noexcept { return limber::fixed::name(x); } \
@@ -62,6 +64,44 @@ bool is_libm_replaced() {
          system::find_symbol("pow") == reinterpret_cast<void*>(static_cast<Binary>(&::pow)) &&
          system::find_symbol("acosf") == reinterpret_cast<void*>(static_cast<FloatUnary>(&::acosf)) &&
          system::find_symbol("sincosf") == reinterpret_cast<void*>(&::sincosf);
+}
+
+std::size_t bind_libm() {
+  static const std::size_t count = [] {
+#define LIMBER_BIND(name)                                                                          \
+  system::SymbolBinding{#name, reinterpret_cast<void*>(static_cast<double (*)(double)>(&::name))}, \
+      system::SymbolBinding {                                                                      \
+#name "f", reinterpret_cast < void*>(static_cast <float (*)(float)>(&::name##f))               \
+  }
+#define LIMBER_BIND2(name)                                                                                 \
+  system::SymbolBinding{#name, reinterpret_cast<void*>(static_cast<double (*)(double, double)>(&::name))}, \
+      system::SymbolBinding {                                                                              \
+#name "f", reinterpret_cast < void*>(static_cast <float (*)(float, float)>(&::name##f))                \
+  }
+    const std::array bindings{LIMBER_BIND(sin),
+                              LIMBER_BIND(cos),
+                              LIMBER_BIND(tan),
+                              LIMBER_BIND(asin),
+                              LIMBER_BIND(acos),
+                              LIMBER_BIND(atan),
+                              LIMBER_BIND(exp),
+                              LIMBER_BIND(exp2),
+                              LIMBER_BIND(log),
+                              LIMBER_BIND(log2),
+                              LIMBER_BIND(log10),
+                              LIMBER_BIND(sinh),
+                              LIMBER_BIND(cosh),
+                              LIMBER_BIND(tanh),
+                              LIMBER_BIND(cbrt),
+                              LIMBER_BIND2(atan2),
+                              LIMBER_BIND2(hypot),
+                              LIMBER_BIND2(pow),
+                              system::SymbolBinding{"sincos", reinterpret_cast<void*>(&::sincos)},
+                              system::SymbolBinding{"sincosf", reinterpret_cast<void*>(&::sincosf)}};
+    return system::bind_symbols({"libluajit-5.1.", "libBulletDynamics", "libBulletCollision", "libLinearMath"},
+                                bindings);
+  }();
+  return count;
 }
 
 }  // namespace limber::fixed

@@ -3,12 +3,15 @@
 
 #include <dlfcn.h>
 #include <link.h>
+#include <pthread.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -32,6 +35,23 @@ std::string machine_name() {
   utsname machine{};
   uname(&machine);
   return std::string(machine.sysname) + " " + machine.machine;
+}
+
+unsigned fork_count() {
+  static std::atomic<unsigned> forks{0};
+  [[maybe_unused]] static const int registered =
+      pthread_atfork(nullptr, nullptr, [] { forks.fetch_add(1, std::memory_order_relaxed); });
+  return forks.load(std::memory_order_relaxed);
+}
+
+std::string library_path(const void* address) {
+  Dl_info info{};
+  if (dladdr(address, &info) == 0 || info.dli_fname == nullptr) return {};
+  char* const path = realpath(info.dli_fname, nullptr);
+  if (path == nullptr) return {};
+  std::string text = path;
+  std::free(path);
+  return text;
 }
 
 void* find_symbol(const char* name) {

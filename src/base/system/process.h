@@ -27,11 +27,17 @@ bool is_portable();
 /// Returns the model name of the processor; empty if unknown.
 std::string processor_name();
 
+/// Returns how often this process and its ancestors have forked since the first call in one of them: it differs in a
+/// child. A lock-free read. [any]
+unsigned fork_count();
+
 /// Returns the bytes allocated on the heap; 0 if the system does not count them.
 double heap_bytes();
 
 /// Returns the function of this name in the program or a loaded library, or null.
 void* find_symbol(const char* name);
+/// Returns the absolute path of the program or library that contains this address; empty if it is unknown.
+std::string library_path(const void* address);
 /// Loads a shared library such as "libEGL.so.1" until the process exits. False on error.
 bool load_library(const char* file);
 

@@ -61,12 +61,59 @@ void block_signal(int signal) {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
 }
 
-SignalHandler extract_profile_handler() {
+void unblock_signal(int signal) {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+}
+
+void block_process_signals() {
+  sigset_t set;
+  sigfillset(&set);
+  for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGABRT}) sigdelset(&set, fault);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+namespace {
+
+bool has_handler(int signal, SignalHandler except) {
+  struct sigaction action {};
+  if (sigaction(signal, nullptr, &action) != 0) return true;
+  return action.sa_handler != SIG_DFL && action.sa_handler != SIG_IGN && action.sa_handler != except;
+}
+
+}  // namespace
+
+int claim_thread_signal(SignalHandler handler) {
+  int signal = SIGURG;
+#ifdef SIGRTMAX
+  if (has_handler(signal, handler)) {
+    signal = SIGRTMAX;
+    while (signal >= SIGRTMIN && has_handler(signal, handler)) signal--;
+    if (signal < SIGRTMIN) return 0;
+  }
+#endif
+  handle_signal_immediately(signal, handler);
+  return signal;
+}
+
+void release_thread_signal(int signal, SignalHandler handler) {
+  struct sigaction action {};
+  if (signal != SIGURG || sigaction(signal, nullptr, &action) != 0 || action.sa_handler != handler) return;
+  handle_signal_immediately(signal, SIG_DFL);
+}
+
+SignalHandler preserve_profile_signal(const std::function<void()>& use) {
+  struct sigaction before {};
   struct sigaction profiler {};
+  itimerval timer{};
+  sigaction(SIGPROF, nullptr, &before);
+  getitimer(ITIMER_PROF, &timer);
+  use();
   sigaction(SIGPROF, nullptr, &profiler);
-  const itimerval never{};
-  setitimer(ITIMER_PROF, &never, nullptr);
-  ::signal(SIGPROF, SIG_IGN);
+  sigaction(SIGPROF, &before, nullptr);
+  setitimer(ITIMER_PROF, &timer, nullptr);
   return profiler.sa_handler;
 }
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 
 namespace limber::system {
 
@@ -35,7 +36,22 @@ void on_user_signal(SignalHandler handler);
 /// Blocks a signal in this thread, except within wait_ready_or_signal(). [the thread]
 void block_signal(int signal);
 
-/// Returns the handler that a profiler has installed for SIGPROF, and disables the signal and its timer. [any]
-SignalHandler extract_profile_handler();
+/// Unblocks a signal in this thread. [the thread]
+void unblock_signal(int signal);
+/// Blocks all signals in this thread, except those of faults: the handlers of the process run on other threads. [the
+/// thread]
+void block_process_signals();
+
+/// Installs a handler of a signal between threads, like handle_signal_immediately(), and returns the signal: SIGURG,
+/// which is ignored by default, or if the process handles it, the highest real-time signal without a handler. Returns 0
+/// if there is none. [any]
+int claim_thread_signal(SignalHandler handler);
+/// Restores the default action of SIGURG if `handler` is still installed. The handler of a real-time signal remains,
+/// because a late one would end the process. [any]
+void release_thread_signal(int signal, SignalHandler handler);
+
+/// Calls `use`, which starts or stops a profiler, and returns the handler for SIGPROF that is installed then. Restores
+/// the handler and the timer that the process had. [any]
+SignalHandler preserve_profile_signal(const std::function<void()>& use);
 
 }  // namespace limber::system

@@ -4,6 +4,7 @@
 #include "base/check.h"
 #include "base/math/fixed_math.h"
 #include "base/system/clock.h"
+#include "base/system/signals.h"
 #include "base/system/thread.h"
 
 namespace limber {
@@ -70,6 +71,7 @@ void ThreadPool::run_tasks(int tasks, Call call, void* context) {
 }
 
 void ThreadPool::worker_main(int thread) {
+  system::block_process_signals();
   fixed::reset_arithmetic();
   system::name_this_thread("limber-worker");
   std::uint32_t last_round = 0;

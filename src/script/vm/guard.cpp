@@ -102,9 +102,9 @@ bool Guard::enable_jit() {
   if (jit_enabled_) return true;
   Guard* expected = nullptr;
   if (!jit_guard.compare_exchange_strong(expected, this)) return false;
-  luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr);
   // only its signal handler is needed, not its timer
-  leave_compiled_code = system::extract_profile_handler();
+  leave_compiled_code =
+      system::preserve_profile_signal([this] { luaJIT_profile_start(state_, "li1000000000", no_profile, nullptr); });
   if (limits_.compiled && compiles_like_interpreter()) {
     luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_ON);
     if (limits_.hot_loop > 0) set_hot_thresholds(state_, limits_.hot_loop);
@@ -116,7 +116,7 @@ bool Guard::enable_jit() {
 void Guard::disable_jit() {
   if (!jit_enabled_) return;
   jit_enabled_ = false;
-  luaJIT_profile_stop(state_);
+  (void)system::preserve_profile_signal([this] { luaJIT_profile_stop(state_); });
   luaJIT_setmode(state_, 0, LUAJIT_MODE_ENGINE | LUAJIT_MODE_OFF);
   jit_guard = nullptr;
 }

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <csignal>
+#include <utility>
 
+#include "base/system/process.h"
 #include "base/system/signals.h"
 #include "base/system/thread.h"
 
@@ -13,8 +14,8 @@ namespace limber::script {
 
 namespace {
 
-// ignored by default and otherwise unused by the program, so a late signal does no harm
-constexpr int kSignal = SIGURG;
+// The signal of the watchdog; 0: none yet.
+std::atomic<int> watch_signal{0};
 constexpr std::int64_t kResendInterval = 5'000'000;  // interval after which an ineffective signal is sent again, ns
 constexpr std::int64_t kPingReplyTime = 200'000;     // time in which a computing thread answers a ping, ns
 
@@ -45,15 +46,28 @@ void on_signal(int) {
   if (__atomic_load_n(&watch->stop_call, __ATOMIC_RELAXED) == call) watch->stop(*watch);
 }
 
+// Of the calling thread. A fork changes its id and its clock; its creator may have blocked the signal.
 struct ThisThread {
-  std::uint64_t id = system::this_thread();
-  std::int64_t clock = system::this_thread_clock();
+  unsigned forks = 0;
+  int signal = 0;
+  std::uint64_t id = 0;
+  std::int64_t clock = 0;
+
+  void update() {
+    forks = system::fork_count();
+    signal = watch_signal.load(std::memory_order_relaxed);
+    id = system::this_thread();
+    clock = system::this_thread_clock();
+    if (signal != 0) system::unblock_signal(signal);
+  }
 };
 
 }  // namespace
 
 void Watch::begin(std::int64_t budget_ns) {
-  thread_local const ThisThread here;
+  thread_local ThisThread here;
+  if (here.id == 0 || here.forks != system::fork_count() || here.signal != watch_signal.load(std::memory_order_relaxed))
+    here.update();
   store(clock, here.clock);
   store(thread, here.id);
   store(budget, budget_ns);
@@ -78,7 +92,14 @@ bool Watch::stop_requested() { return (call & 1u) != 0 && load(stop_call) == cal
 std::shared_ptr<Watchdog> Watchdog::instance() {
   static std::mutex mutex;
   static std::weak_ptr<Watchdog> known;
+  static unsigned forks = system::fork_count();
   const std::scoped_lock lock(mutex);
+  if (forks != system::fork_count()) {
+    // its thread exists in the parent process only; it is not destroyed, because that would wait for the thread
+    if (std::shared_ptr<Watchdog> parents = known.lock()) (void)new std::shared_ptr<Watchdog>(std::move(parents));
+    known.reset();
+    forks = system::fork_count();
+  }
   std::shared_ptr<Watchdog> found = known.lock();
   if (found == nullptr) known = found = std::shared_ptr<Watchdog>(new Watchdog);
   return found;
@@ -86,7 +107,8 @@ std::shared_ptr<Watchdog> Watchdog::instance() {
 
 Watchdog::Watchdog() {
   // installed without a sanitizer's wrapper, which defers handlers to the next call; compiled Lua makes no calls
-  system::handle_signal_immediately(kSignal, on_signal);
+  signal_ = system::claim_thread_signal(on_signal);
+  watch_signal.store(signal_, std::memory_order_relaxed);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -97,6 +119,7 @@ Watchdog::~Watchdog() {
   }
   changed_.notify_all();
   thread_.join();
+  system::release_thread_signal(signal_, on_signal);
 }
 
 void Watchdog::add(Watch& watch, std::int64_t poll_ns) {
@@ -113,6 +136,7 @@ void Watchdog::remove(Watch& watch) {
 }
 
 void Watchdog::run() {
+  system::block_process_signals();
   std::unique_lock lock(mutex_);
   while (!end_) {
     if (watches_.empty()) {
@@ -126,7 +150,7 @@ void Watchdog::run() {
 }
 
 // Returns the time until the next check, ns: CPU time never runs faster than wall time.
-std::int64_t Watchdog::check(Watch& watch, std::int64_t poll) {
+std::int64_t Watchdog::check(Watch& watch, std::int64_t poll) const {
   const std::uint64_t call = load(watch.call, std::memory_order_acquire);
   if ((call & 1u) == 0) return poll;
   const std::int64_t now = system::cpu_nanoseconds(load(watch.clock));
@@ -145,7 +169,7 @@ std::int64_t Watchdog::check(Watch& watch, std::int64_t poll) {
   const std::int64_t left = part - (now - watch.observed_at);
   if (left > 0) return std::min(left, poll);
   store(watch.second_half ? watch.stop_call : watch.pinged_call, call);
-  system::signal_thread(load(watch.thread), kSignal);
+  if (signal_ != 0) system::signal_thread(load(watch.thread), signal_);
   return watch.second_half ? std::min(poll, kResendInterval) : kPingReplyTime;
 }
 

@@ -1,7 +1,8 @@
 // Watchdog: a thread that stops Lua calls that exceed their CPU time budget. It reads the CPU clock of the calling
 // thread, so waiting does not count and a loaded machine stops no innocent call. A virtual machine that is suspended
 // for a while does count as computing; therefore a call is stopped only if it computes for the second half of its
-// budget after it has answered a ping signal.
+// budget after it has answered a ping signal. The signal is one that the process doesn't use
+// (system::claim_thread_signal).
 #pragma once
 
 #include <condition_variable>
@@ -62,12 +63,13 @@ class Watchdog {
 
   Watchdog();
   void run();
-  static std::int64_t check(Watch& watch, std::int64_t poll);
+  std::int64_t check(Watch& watch, std::int64_t poll) const;
 
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<Entry> watches_;
   bool end_ = false;
+  int signal_ = 0;  // sent to the thread of a call
   std::thread thread_;
 };
 
