@@ -124,6 +124,26 @@ void Engine::execute_reset_and_take_requests(bool running) {
   playback_.end_if_requested();
 }
 
+bool Engine::restart(std::optional<std::uint64_t> seed) {
+  const auto set_seed = [this](std::uint64_t number) {
+    const auto value = static_cast<double>(number);
+    (void)store().set(world().id(), "seed", {&value, 1});  // can't fail: the caller has checked the range
+  };
+  const std::uint64_t previous = world().seed();
+  std::optional<std::uint64_t>& option = show_.options.scene_options.seed;
+  const std::optional<std::uint64_t> previous_option = std::exchange(option, seed ? seed : option);
+  show_.overrides.clear();
+  show_.undo_stack.clear();
+  // the reset copies the seed of the present world, and prefers one that was set since the start
+  if (option) set_seed(*option);
+  show_.scene_seed = world().seed();
+  if (scenes_.reset()) return true;
+  set_seed(previous);
+  option = previous_option;
+  show_.scene_seed = previous;
+  return false;
+}
+
 // Resets the scene and records from there: a take begins with a run of the scene from its start.
 void Engine::begin_recording() {
   world().requests().reset = false;

@@ -12,6 +12,7 @@
 #include "engine/input/live_input.h"
 #include "engine/output/health_monitor.h"
 #include "engine/reload/scene_runner.h"
+#include "engine/saved_states.h"
 #include "engine/takes/playback.h"
 #include "engine/takes/recording.h"
 
@@ -95,6 +96,11 @@ class Engine {
   /// Restores the newest checkpoint before this tick and discards everything since, except presets. Call it between two
   /// passes. It is not recorded in a take. Returns false, without a change, if there is no such checkpoint. [sim]
   bool restore_before(std::uint64_t tick) { return show_.restore_before(tick); }
+  /// Copies of the state in memory, between two passes. [sim]
+  SavedStates& saved_states() { return saved_states_; }
+  /// Runs the scene from its start, with this seed or its own, as a reset does, and drops the edits of controllers. On
+  /// error the show continues unchanged. Call it between two passes. [sim]
+  bool restart(std::optional<std::uint64_t> seed);
   /// Hash of the world, the scene and the random number generators. [sim]
   std::uint64_t state_hash() const { return show_.state_hash(); }
   /// Number of script errors, rejected values and unstable bodies so far, for `--strict`. [sim]
@@ -119,6 +125,7 @@ class Engine {
   SceneRunner scenes_{show_, recording_, recovery_};
   TakePlayback playback_{show_, executor_, rewinder_, live_input_, scenes_, recording_, recovery_};
   HealthMonitor health_{show_};
+  SavedStates saved_states_{show_};
   PhaseTimes times_;
 };
 

@@ -17,6 +17,11 @@ namespace limber::engine {
 
 struct EngineOptions {
   std::string scene;                   ///< Scene file; empty: an empty world.
+  /// Text of the scene; `scene` is then its name, a path in the folder where it finds files.
+  std::optional<std::string> scene_text;
+  /// A program drives the engine (src/lib) and sets values directly, between two passes. These are not recorded, so
+  /// there are neither takes nor rewinds.
+  bool embedded = false;
   script::SceneOptions scene_options;  ///< Seed, package paths, installed data.
   bool fast = false;                   ///< Computes ticks without waiting for real time. The result is the same.
   /// Time advances only by /transport/step, without waiting for real time; messages behind a step wait for its ticks.

@@ -34,7 +34,7 @@ script::SceneOptions ShowState::scene_options() const {
 }
 
 void ShowState::end_history_pass(bool running) {
-  history.end_pass(*session, call_log, running, session->world_value("history"));
+  history.end_pass(*session, call_log, running, options.embedded ? 0 : session->world_value("history"));
 }
 
 bool ShowState::restore_before(std::uint64_t tick) {

@@ -27,6 +27,7 @@ std::size_t History::bytes() const {
 }
 
 void History::clear(std::string_view why) {
+  clears_++;
   while (!checkpoints_.empty()) drop(checkpoints_.size() - 1);
   if (pinned_ != nullptr) store_.recycle(std::move(pinned_));
   pinned_tick_ = kNoTick;

@@ -35,6 +35,8 @@ class History {
 
   /// Discards everything: the state from now on is the oldest that can be restored. `why`: reason, for limit_reason().
   void clear(std::string_view why);
+  /// Number of calls of clear(): no state from before the last one can be restored.
+  std::uint64_t clears() const { return clears_; }
   /// Records an input of the current pass; see InputLog::record().
   void record_input(const Message& message, const CommandOrigin& origin, bool evaluate);
   /// Ends the pass: records the stopped calls in `calls`, captures a checkpoint if one is due and discards everything
@@ -86,6 +88,7 @@ class History {
   std::uint64_t structure_version_ = 0;  // structure version of the store, the same for all checkpoints
   std::uint64_t checkpoint_tick_ = 0;    // of the last checkpoint
   double checkpoint_time_ = 0;
+  std::uint64_t clears_ = 0;
   bool too_large_ = false;
   bool shortage_reported_ = false;
   std::size_t max_bytes_ = kMaxBytes;

@@ -18,6 +18,8 @@ SceneRunner::Run SceneRunner::begin_run(TakeSceneRun::Kind kind, bool reuse_file
   Run run;
   run.index = recording_.begin_run({kind, false, reuse_files, 0, scene});
   run.files = show_.input->begin_run(kind);
+  if (show_.options.scene_text && run.files.sources == nullptr)
+    run.files.sources = script::Sources::of_text(show_.options.scene, *show_.options.scene_text);
   return run;
 }
 

@@ -107,6 +107,8 @@ std::function<void(const std::string&)> TakeRecording::failure_reporter() {
 Outcome TakeRecording::request(const Message& message) {
   Outcome outcome = Outcome::answered();
   const std::string address = normalized_name(message.address);
+  if (show_.options.embedded)
+    return Outcome::rejected("takes can't be recorded or played in a program that uses liblimber; use limber play");
   if (address == "/take/stop") {
     if (recorder_ == nullptr) return Outcome::rejected("no take is being recorded; /take/record starts one");
     end_requested_ = true;

@@ -38,6 +38,12 @@ Sources::Sources(std::map<std::string, std::string> found, const std::shared_ptr
                  std::shared_ptr<model::ModelLibrary> library)
     : archived_files_(files), library_(std::move(library)), found_(std::move(found)) {}
 
+std::shared_ptr<const Sources> Sources::of_text(const std::string& path, std::string text) {
+  const auto sources = std::make_shared<Sources>();
+  sources->texts_[path] = std::move(text);
+  return sources;
+}
+
 // the result of an earlier run, else that of `find`
 template <class Find>
 Result<std::string> Sources::look_up(const std::string& key, Find find) {

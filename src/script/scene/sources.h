@@ -35,6 +35,9 @@ class Sources {
   /// `earlier`: an earlier run; its data are reused instead of reading the disk.
   explicit Sources(std::shared_ptr<const Sources> earlier = nullptr) : earlier_(std::move(earlier)) {}
 
+  /// Sources whose script at this path has this text; all other files are read from the disk.
+  static std::shared_ptr<const Sources> of_text(const std::string& path, std::string text);
+
   /// Sources of an archived run: files that it has not read are reported as missing, whatever is on the disk.
   /// `library`: models created from these files before; runs that share it share models, as runs from the disk do.
   Sources(std::map<std::string, std::string> found, const std::shared_ptr<const model::FileSet>& files,
