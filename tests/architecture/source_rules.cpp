@@ -36,6 +36,7 @@ constexpr std::array kModules{
     Module{"ui/panel", "properties model engine"},
     // motion files, without access to the scene
     Module{"export", ""},
+    Module{"lib", "properties model sim script engine"},
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
     Module{"app",
@@ -72,6 +73,7 @@ constexpr std::array kNamespaces{
     Namespace{"export/", "exporter"},
     Namespace{"experiments/", "experiments"},
     Namespace{"app/", "app"},
+    Namespace{"lib/", "lib"},
 };
 /// A nested namespace that every module may extend: the constructors of property definitions.
 constexpr std::string_view kSharedNamespace = "limber::properties";
