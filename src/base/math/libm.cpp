@@ -5,6 +5,7 @@
 // computes depend on neither the version of the C library nor on the processor. is_libm_replaced() checks this.
 #include <array>
 #include <cmath>
+#include <string_view>
 
 #include "base/math/fixed_math.h"
 #include "base/system/process.h"
@@ -53,12 +54,22 @@ extern "C" void sincosf(float x, float* sine, float* cosine) noexcept {
 }
 
 namespace limber::fixed {
+namespace {
+
+using Unary = double (*)(double);
+using Binary = double (*)(double, double);
+using FloatUnary = float (*)(float);
+using FloatBinary = float (*)(float, float);
+
+template <class Function>
+system::SymbolBinding binding(std::string_view name, Function* function) {
+  return {name, reinterpret_cast<void*>(function)};
+}
+
+}  // namespace
 
 // False if the linker left these symbols out of the table of exported ones.
 bool is_libm_replaced() {
-  using Unary = double (*)(double);
-  using Binary = double (*)(double, double);
-  using FloatUnary = float (*)(float);
   return system::find_symbol("sin") == reinterpret_cast<void*>(static_cast<Unary>(&::sin)) &&
          system::find_symbol("exp") == reinterpret_cast<void*>(static_cast<Unary>(&::exp)) &&
          system::find_symbol("pow") == reinterpret_cast<void*>(static_cast<Binary>(&::pow)) &&
@@ -68,16 +79,10 @@ bool is_libm_replaced() {
 
 std::size_t bind_libm() {
   static const std::size_t count = [] {
-#define LIMBER_BIND(name)                                                                          \
-  system::SymbolBinding{#name, reinterpret_cast<void*>(static_cast<double (*)(double)>(&::name))}, \
-      system::SymbolBinding {                                                                      \
-#name "f", reinterpret_cast < void*>(static_cast <float (*)(float)>(&::name##f))               \
-  }
-#define LIMBER_BIND2(name)                                                                                 \
-  system::SymbolBinding{#name, reinterpret_cast<void*>(static_cast<double (*)(double, double)>(&::name))}, \
-      system::SymbolBinding {                                                                              \
-#name "f", reinterpret_cast < void*>(static_cast <float (*)(float, float)>(&::name##f))                \
-  }
+#define LIMBER_BIND(name) \
+  binding(#name, static_cast<Unary>(&::name)), binding(#name "f", static_cast<FloatUnary>(&::name##f))
+#define LIMBER_BIND2(name) \
+  binding(#name, static_cast<Binary>(&::name)), binding(#name "f", static_cast<FloatBinary>(&::name##f))
     const std::array bindings{LIMBER_BIND(sin),
                               LIMBER_BIND(cos),
                               LIMBER_BIND(tan),
@@ -96,8 +101,8 @@ std::size_t bind_libm() {
                               LIMBER_BIND2(atan2),
                               LIMBER_BIND2(hypot),
                               LIMBER_BIND2(pow),
-                              system::SymbolBinding{"sincos", reinterpret_cast<void*>(&::sincos)},
-                              system::SymbolBinding{"sincosf", reinterpret_cast<void*>(&::sincosf)}};
+                              binding("sincos", &::sincos),
+                              binding("sincosf", &::sincosf)};
     return system::bind_symbols({"libluajit-5.1.", "libBulletDynamics", "libBulletCollision", "libLinearMath"},
                                 bindings);
   }();
