@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-void expect_near(const Vec3& a, const Vec3& b, double tolerance = 1e-9) {
+void expect_place(const Vec3& a, const Vec3& b, double tolerance = 1e-9) {
   EXPECT_LT(glm::length(a - b), tolerance)
       << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " " << b.z;
 }
@@ -22,7 +22,7 @@ TEST(Mocap, AJointAppearsWhereItsFirstSampleIs) {
   s.ticks(1);
   ASSERT_EQ(source.joints().size(), 2u);
   EXPECT_EQ(source.joints()[1]->name(), "joint_2");
-  expect_near(s.vec(s.joint(source, 1).id(), "position"), {4, 5, 6});
+  expect_place(s.vec(s.joint(source, 1).id(), "position"), {4, 5, 6});
   EXPECT_EQ(s.number(s.joint(source).id(), "speed"), 0) << "an appearance is no motion";
   EXPECT_EQ(s.number(s.joint(source).id(), "confidence"), 1);
   EXPECT_NEAR(s.number(s.joint(source).id(), "age"), s.dt(), 1e-12);
@@ -38,7 +38,7 @@ TEST(Mocap, OffsetRotationAndScaleMapItToTheStage) {
   s.set(source.id(), "scale", {2});
   s.send("/p", {1, 2, 3});
   s.ticks(1);
-  expect_near(s.joint(source).pose().position, {10 - 4, 20 + 2, 30 + 6});
+  expect_place(s.joint(source).pose().position, {10 - 4, 20 + 2, 30 + 6});
 }
 
 TEST(Mocap, ASlowSourceMovesEvenly) {
@@ -99,7 +99,7 @@ TEST(Mocap, ALostSourceIsHeldThenFadesAndIsReportedOnce) {
   EXPECT_EQ(s.number(source.id(), "tracked"), 0);
   EXPECT_EQ(s.number(source.id(), "missing"), 1);
   EXPECT_NEAR(s.number(s.joint(source).id(), "confidence"), 0.5, 1e-9);
-  expect_near(s.joint(source).pose().position, {1, 2, 3});
+  expect_place(s.joint(source).pose().position, {1, 2, 3});
   s.ticks(600);
   EXPECT_EQ(s.number(s.joint(source).id(), "confidence"), 0);
   EXPECT_EQ(log_newest() - log_before, 1u);
@@ -132,9 +132,9 @@ TEST(Mocap, LocalPosesAddUpAlongTheBones) {
   s.send("/b", {1, 0, 0, half, 0, 0, half}, "hips");      // a quarter turn about z
   s.send("/b", {0.25, 0, 0, half, half, 0, 0}, "chest");  // a quarter turn about x
   s.ticks(1);
-  expect_near(source.find("chest")->pose().position, {1, 0.25, 0});
+  expect_place(source.find("chest")->pose().position, {1, 0.25, 0});
   // Rz(90°)·Rx(90°)·(0, 0, 0.5) = Rz(90°)·(0, −0.5, 0) = (0.5, 0, 0)
-  expect_near(source.find("head")->pose().position, {1.5, 0.25, 0});
+  expect_place(source.find("head")->pose().position, {1.5, 0.25, 0});
   const std::vector<double> local = s.get(source.find("chest")->id(), "local_rotation");
   EXPECT_NEAR(std::abs(local[0] * half + local[3] * half), 1, 1e-12) << "relative to the hips";
 }
@@ -152,9 +152,9 @@ TEST(Mocap, AVmcDancerStandsUpright) {
   EXPECT_EQ(s.send("/VMC/Ext/Blend/Val", {1}, "Joy"), "") << "other messages of the protocol are ignored";
   EXPECT_EQ(s.send("/VMC/Other", {1}), "not received");
   s.ticks(1);
-  expect_near(source.find("Spine")->pose().position, {0, 0, 1.5});
+  expect_place(source.find("Spine")->pose().position, {0, 0, 1.5});
   // forward (z) becomes y; left and right remain
-  expect_near(source.find("LeftUpperArm")->pose().position, {0.25, 0.5, 1.6});
+  expect_place(source.find("LeftUpperArm")->pose().position, {0.25, 0.5, 1.6});
 }
 
 TEST(Mocap, SwappedDancersAreReported) {
@@ -210,8 +210,8 @@ TEST(Mocap, APlayerFollowsItsFile) {
       "HIERARCHY ROOT hips\n{ OFFSET 0 0 0 CHANNELS 3 Xposition Yposition Zposition JOINT head\n{ OFFSET 0 0.5 0 "
       "CHANNELS 0 } } MOTION Frames: 3 Frame Time: 1  0 1 0  1 1 0  3 1 0");
   s.ticks(30);  // half a second
-  expect_near(s.joint(source).pose().position, {0.5, 0, 1}, 1e-6);
-  expect_near(s.joint(source, 1).pose().position, {0.5, 0, 1.5}, 1e-6);
+  expect_place(s.joint(source).pose().position, {0.5, 0, 1}, 1e-6);
+  expect_place(s.joint(source, 1).pose().position, {0.5, 0, 1.5}, 1e-6);
   EXPECT_NEAR(s.joint(source).velocity().x, 1, 1e-5);
   s.set(source.id(), "speed", {0.5});
   s.ticks(60);
@@ -219,7 +219,7 @@ TEST(Mocap, APlayerFollowsItsFile) {
   s.set(source.id(), "playing", {0});
   s.set(source.id(), "time", {1.5});
   s.ticks(60);
-  expect_near(s.joint(source).pose().position, {2, 0, 1}, 1e-6);
+  expect_place(s.joint(source).pose().position, {2, 0, 1}, 1e-6);
   s.set(source.id(), "playing", {1});
   s.set(source.id(), "loop", {0});
   s.set(source.id(), "speed", {100});
@@ -242,7 +242,7 @@ TEST(Mocap, FeaturesAreThoseOfTheirFormulas) {
     s.ticks(1);
   };
   for (int i = 0; i < 20; i++) place(1 + i * s.dt(), 0);  // 1 m/s each
-  expect_near(s.vec(source.id(), "center"), {0, 0, 1}, 1e-9);
+  expect_place(s.vec(source.id(), "center"), {0, 0, 1}, 1e-9);
   EXPECT_NEAR(s.number(source.id(), "expansion"), 1 + 19 * s.dt(), 1e-9);
   EXPECT_NEAR(s.number(source.id(), "mean_speed"), 1, 1e-9);
   EXPECT_NEAR(s.number(source.id(), "symmetry"), 1, 1e-9);
