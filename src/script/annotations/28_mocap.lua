@@ -6,7 +6,7 @@
 ---@param name string # A name of your choice, unique among the sources.
 ---@param opts mocap_opts # `source`, and properties such as `offset`.
 ---@return mocap
----@error sim:add_mocap("dancer", { source = "nobody.bvh" }) --> mocap 'dancer': there is no file 'nobody.bvh'; looked for …
+---@error sim:add_mocap("dancer", { source = "absent.bvh" }) --> mocap 'dancer': there is no file 'absent.bvh'; looked for …
 ---@error sim:add_mocap("dancer", { source = "midi" }) --> mocap 'dancer': there is no dialect 'midi'; there are: osc, vmc
 ---@error sim:add_mocap("dancer", { source = "osc", unit = "feet" }) --> add_mocap: unit is 'm', 'cm', 'mm', 'in', 'ft', or a number of meters, not 'feet'
 ---@error sim:add_mocap("dancer", { messages = { ["/a"] = "x y" } }) --> mocap 'dancer': /a: 'x' needs all 3 words of its vector

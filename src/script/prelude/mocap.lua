@@ -95,9 +95,9 @@ method("add_mocap", function(_, name, opts)
   set_source(opts)
   if opts.messages ~= nil then set_messages(opts.messages) end
   if opts.unit ~= nil then set_unit(opts.unit) end
-  local who = opts.dancer
-  if type(who) == "number" then who = string.format("%d", who) end
-  if who ~= nil then option(dancer, who, "add_mocap: dancer") end
+  local key = opts.dancer
+  if type(key) == "number" then key = string.format("%d", key) end
+  if key ~= nil then option(dancer, key, "add_mocap: dancer") end
   for key, which in pairs { up = up, handed = handed, quaternion = quaternion } do
     if opts[key] ~= nil then option(which, opts[key], "add_mocap: " .. key) end
   end

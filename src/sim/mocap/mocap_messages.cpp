@@ -51,23 +51,26 @@ Result<MocapMessage> MocapMessage::compile(const MocapMapping& mapping) {
   }
   for (const std::string_view word : split(mapping.words, ' ')) {
     if (word.empty()) continue;
-    const auto found = std::ranges::find(kWordNames, word);
-    if (found == kWordNames.end())
-      return Error{fmt::format("{}: there is no word '{}'{}", mapping.address, printable(word),
-                               name_hint(word, std::span<const std::string_view>(kWordNames)))};
-    const auto code = static_cast<std::uint8_t>(found - kWordNames.begin());
-    if (code != kSkipped && std::ranges::find(out.words_, code) != out.words_.end())
-      return Error{fmt::format("{}: '{}' appears twice", mapping.address, word)};
-    if (out.words_.size() == kMaxWords)
-      return Error{fmt::format("{}: has more than {} words", mapping.address, kMaxWords)};
-    out.words_.push_back(code);
-    out.has_joint_word_ = out.has_joint_word_ || code == kJointName;
-    out.is_local_ = out.is_local_ || (code >= kLocalX && code < kConfidence);
+    if (Result<void> added = out.add_word(word); !added) return Error{added.error()};
   }
   if (out.has_joint_word_ && out.has_joint_segment_)
     return Error{fmt::format("{}: the joint is named in the address and by an argument; remove one", mapping.address)};
   if (Result<void> checked = out.check_groups(); !checked) return Error{checked.error()};
   return out;
+}
+
+Result<void> MocapMessage::add_word(std::string_view word) {
+  const auto found = std::ranges::find(kWordNames, word);
+  if (found == kWordNames.end())
+    return Error{fmt::format("{}: there is no word '{}'{}", address_, printable(word),
+                             name_hint(word, std::span<const std::string_view>(kWordNames)))};
+  const auto code = static_cast<std::uint8_t>(found - kWordNames.begin());
+  if (code != kSkipped && std::ranges::find(words_, code) != words_.end())
+    return Error{fmt::format("{}: '{}' appears twice", address_, word)};
+  if (words_.size() == kMaxWords) return Error{fmt::format("{}: has more than {} words", address_, kMaxWords)};
+  words_.push_back(code);
+  has_joint_word_ = has_joint_word_ || code == kJointName;
+  return {};
 }
 
 // A vector or a quaternion must be complete.

@@ -46,7 +46,6 @@ class MocapMessage {
   /// The joint in an address of this pattern; empty if it does not match.
   std::string_view joint_in(std::string_view address) const;
   bool ignored() const { return words_.empty(); }
-  bool is_local() const { return is_local_; }
   /// Number of joints in a message. Error: arguments that don't fit.
   Result<std::size_t> count(std::span<const Arg> args) const;
   /// Decodes the values of one of them. Values that are not finite, and quaternions of length 0, are omitted: this is
@@ -54,13 +53,13 @@ class MocapMessage {
   MocapSample decode(std::span<const Arg> args, std::size_t index) const;
 
  private:
+  Result<void> add_word(std::string_view word);
   Result<void> check_groups() const;
 
   std::string address_;
   std::string before_joint_, after_joint_;  // around <joint>
   bool has_joint_segment_ = false;
   bool has_joint_word_ = false;
-  bool is_local_ = false;
   std::vector<std::uint8_t> words_;  // by argument
 };
 
