@@ -77,6 +77,14 @@ Result<Plan> make_plan(const ExportCommand& command) {
                                                         : "end with .glb or .gltf")};
 }
 
+// make_plan(), and a check of the options that belong to one format
+Result<Plan> make_checked_plan(const ExportCommand& command) {
+  Result<Plan> plan = make_plan(command);
+  if (plan && plan->format != Format::csv && !command.extras.empty())
+    return Error{"--with adds columns to a table; use it with --format csv"};
+  return plan;
+}
+
 // fails if an existing file would be overwritten
 Result<void> check_not_existing(const Plan& plan, bool overwrite) {
   std::vector<std::string> names = {plan.output};
@@ -168,10 +176,8 @@ int report_result(const Plan& plan, const ExportCommand& command, const ExportRe
 }  // namespace
 
 int export_take(const ExportCommand& command, const std::function<bool()>& cancel) {
-  const Result<Plan> plan = make_plan(command);
+  const Result<Plan> plan = make_checked_plan(command);
   if (!plan) return fail(kUsageError, plan.error());
-  if (!command.extras.empty() && plan->format != Format::csv)
-    return fail(kUsageError, "--with adds columns to a table; use it with --format csv");
   if (command.to && *command.to < command.from)
     return fail(kUsageError, fmt::format("--to {} is before --from {}; choose a later time", number_text(*command.to),
                                          number_text(command.from)));

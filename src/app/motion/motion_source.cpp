@@ -268,7 +268,7 @@ Result<void> MotionSource::add_frame(double time, const engine::Snapshot& previo
     const engine::BodyEntry& b =
         continues ? current.body_list->bodies[static_cast<std::size_t>(next.body_of[number])] : a;
     fill_sample(track, {snapshot, a}, {continues ? current : snapshot, b}, continues ? mix : 0);
-    fill_extras(track, continues ? mix : mix >= 1 ? 1 : 0, samples_[*track.writer_number]);
+    fill_extras(track, continues ? mix : std::floor(mix), samples_[*track.writer_number]);
   }
   return writer.add_frame(time, samples_);
 }
