@@ -18,27 +18,33 @@ constexpr std::string_view kForms =
     "write NAME=MIN:MAX:STEP (0.1:1:0.1), NAME=MIN:MAX/N (0.1:1/10), NAME=MIN:MAX, or a list (0.2,0.4)";
 constexpr double kWholeSteps = 1e-9;  // tolerance for the last step of a grid
 
+// the number of values in "0.1:1/10"
+std::optional<int> parse_count(std::string_view text) {
+  const std::optional<double> count = parse_number(text);
+  if (!count || *count < 2 || *count > static_cast<double>(kMaxValues) || *count != std::floor(*count)) return {};
+  return static_cast<int>(*count);
+}
+
 // "0.1:1:0.1", "0.1:1/10", "0.1:1"
 std::optional<AxisText> parse_range(std::string_view text) {
   const std::vector<std::string_view> parts = split(text, ':');
   if (parts.size() < 2 || parts.size() > 3) return {};
+  const bool has_step = parts.size() == 3;
   AxisText axis;
   std::string_view last = parts[1];
   if (const std::size_t slash = last.find('/'); slash != std::string_view::npos) {
-    const std::optional<double> count = parse_number(last.substr(slash + 1));
-    if (parts.size() == 3 || !count || *count < 2 || *count > static_cast<double>(kMaxValues) ||
-        *count != std::floor(*count))
-      return {};
-    axis.count = static_cast<int>(*count);
+    const std::optional<int> count = parse_count(last.substr(slash + 1));
+    if (has_step || !count) return {};
+    axis.count = *count;
     last = last.substr(0, slash);
   }
   const std::optional<double> min = parse_number(parts[0]);
   const std::optional<double> max = parse_number(last);
-  const std::optional<double> step = parts.size() == 3 ? parse_number(parts[2]) : 0;
-  if (!min || !max || !step || !(*min < *max) || (parts.size() == 3 && !(*step > 0))) return {};
+  const std::optional<double> step = has_step ? parse_number(parts[2]) : 1;
+  if (!min || !max || !step || *min >= *max || *step <= 0) return {};
   axis.min = *min;
   axis.max = *max;
-  axis.step = *step;
+  if (has_step) axis.step = *step;
   return axis;
 }
 
