@@ -4,6 +4,7 @@
 
 #include "bench/raw/loop.h"
 #include "sim/arm.h"
+#include "sim/behavior/behavior_list.h"
 #include "sim/counted_new.h"
 #include "sim/stage.h"
 
@@ -38,6 +39,21 @@ TEST(Allocation, TicksDoNotAllocate) {
   for (int i = 60; i < 160; i++) tick(i);
   EXPECT_EQ(allocations() - before, 0u);
   EXPECT_GT(before, 100u);  // the counter works
+}
+
+TEST(Allocation, RoutesAllocateNothingInATick) {
+  WorldFixture s;
+  Part& part = s.add_single_part(sphere_model(0.1), 1);
+  const std::string path = s.store.path(part.id());
+  Route& route = *s.world.behaviors().routes().add("route", "/physics/sim/time", path + "/linear_damping").value();
+  s.set(route.id(), "smoothing", {0.1});
+  s.set(route.id(), "lag", {0.1});
+  ASSERT_TRUE(s.world.behaviors().routes().add("pattern", path + "/position", path + "/*_velocity").ok());
+  s.ticks(10);
+  const std::size_t before = allocations();
+  s.ticks(30);
+  EXPECT_EQ(allocations() - before, 0u);
+  EXPECT_EQ(s.number(route.id(), "links"), 1);
 }
 
 TEST(Allocation, TendonsAllocateNothingInATick) {

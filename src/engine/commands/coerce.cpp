@@ -9,8 +9,7 @@
 
 #include "base/plural.h"
 #include "base/text.h"
-#include "sim/world/joint.h"
-#include "sim/world/motor.h"
+#include "sim/routes/own_axis.h"
 #include "sim/world/world.h"
 
 namespace limber::engine {
@@ -69,17 +68,6 @@ std::optional<double> number_of(const Property& property, const Arg& arg) {
 std::string arg_text(const Arg& arg) {
   if (arg.is_text()) return fmt::format("'{}'", printable(arg.text));
   return arg.is_numeric() ? number_text(arg.number) : "an argument without a value";
-}
-
-// Returns the index (0 to 2) of the own axis, for linear or angular properties of a joint or motor; -1: no own axis.
-int own_axis_index(const Store& store, NodeId node, const Property& property) {
-  const PropertyTable* table = &store.table(node);
-  int own_axis = -1;
-  if (table == &sim::Joint::table()) own_axis = static_cast<const sim::Joint*>(store.object(node))->own_axis();
-  if (table == &sim::Motor::table()) own_axis = static_cast<const sim::Motor*>(store.object(node))->joint().own_axis();
-  if (own_axis < 0) return -1;
-  const bool angular = property.name.find("angular") != std::string::npos;
-  return (own_axis >= 3) == angular ? own_axis % 3 : -1;
 }
 
 Error wrong_count(const Property& property, std::size_t given) {
@@ -161,7 +149,7 @@ Result<PropertyValues> expand(const Store& store, NodeId node, const Property& p
     expanded.values = {0, 0, given.values[0], 0};
     return expanded;
   }
-  const int axis = own_axis_index(store, node, property);
+  const int axis = sim::own_axis_index(store, node, property);
   if (axis < 0) return Error{fmt::format("has no own axis for {}; give three numbers", property.name)};
   store.get(node, property, expanded.values.data());
   expanded.values[static_cast<std::size_t>(axis)] = given.values[0];

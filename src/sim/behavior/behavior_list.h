@@ -1,5 +1,5 @@
 // BehaviorList: a world's behaviors, built-in and Lua, in the order in which they are stepped: the order of their
-// creation, unless one was moved. A group is one entry. [sim]
+// creation, unless one was moved. A group is one entry. Before them, a step applies the routes of the world. [sim]
 #pragma once
 
 #include <functional>
@@ -15,6 +15,7 @@
 #include "sim/behavior/behavior_transaction.h"
 #include "sim/behavior/behavior_type.h"
 #include "sim/neighbors/neighbor_set.h"
+#include "sim/routes/route_list.h"
 
 namespace limber::sim {
 
@@ -25,6 +26,9 @@ class BehaviorList {
   BehaviorList(const BehaviorList&) = delete;
   BehaviorList& operator=(const BehaviorList&) = delete;
 
+  /// The routes of the world.
+  RouteList& routes() { return routes_; }
+  const RouteList& routes() const { return routes_; }
   BehaviorTypes& types() { return types_; }
   const BehaviorTypes& types() const { return types_; }
 
@@ -60,7 +64,7 @@ class BehaviorList {
   const BehaviorOrder& order() const { return order_; }
   /// Returns an error while behaviors are being stepped.
   Result<void> check_can_move() const;
-  /// Steps every behavior that runs, in order.
+  /// Applies the routes, then steps every behavior that runs, in order.
   void step(double dt);
   /// Number of steps so far.
   std::uint64_t step_count() const { return step_count_; }
@@ -107,6 +111,7 @@ class BehaviorList {
   World& world_;
   NodeId group_node_;
   BehaviorTypes types_;
+  RouteList routes_;
   std::vector<StepEntry> entries_;
   BehaviorOrder order_{world_, entries_};
   std::vector<RemovedBehavior> retired_;  // removed while behaviors were stepped

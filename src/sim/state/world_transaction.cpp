@@ -59,6 +59,7 @@ void WorldTransaction::commit() {
   active_ = false;
   world_.store().commit_transaction();
   world_.behaviors().transaction().commit();
+  world_.behaviors().routes().destroy_hidden();
   destroy(hidden_gears_);
   destroy(hidden_tendons_);
   destroy(hidden_bodies_);
