@@ -35,7 +35,7 @@ std::shared_ptr<const Preset> sample(const std::string& name, Random& random) {
 }
 
 bool same(const Preset& a, const Preset& b) {
-  return a.name == b.name && a.selection == b.selection && *a.schema == *b.schema &&
+  return a.name == b.name && a.selection == b.selection && *a.schema == *b.schema && a.routes == b.routes &&
          a.values.size() == b.values.size() &&
          std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(double)) == 0;
 }
@@ -44,6 +44,29 @@ class PresetText : public testing::Test {
  protected:
   void SetUp() override { LIMBER_SKIP_IF(kThreadSanitizer, "its tests use one thread"); }
 };
+
+TEST_F(PresetText, RoutesAreReadBack) {
+  PresetBuilder builder;
+  EXPECT_TRUE(builder.add_route({"my \"route\"", "/physics/sim/time", "/scene/n"}));
+  EXPECT_TRUE(builder.add_route({"second", "/a//*", "/b.x"}));
+  EXPECT_FALSE(builder.add_route({"second", "/a", "/b"}));
+  const PresetList list{builder.finish("p", {})};
+  const Result<ParsedPresets> read = parse_presets(text_of(list));
+  ASSERT_TRUE(read.ok()) << read.error();
+  EXPECT_TRUE(read->problems.empty());
+  EXPECT_EQ(read->presets.at(0)->routes, list[0]->routes);
+  EXPECT_EQ(list[0]->routes.size(), 2u);
+}
+
+TEST_F(PresetText, BadRoutesAreReported) {
+  const Result<ParsedPresets> read = parse_presets(R"({ "limber presets": 1, "presets": [ { "name": "p", "routes": [
+      ["a", "/x", "/y"], ["a", "/x", "/z"], ["b", "/x"], ["c", "x", "/y"], ["d", "/x", "/y", "/z"], ["", "/x", "/y"],
+      ["e", 5, "/y"], 6 ], "values": {} } ] })");
+  ASSERT_TRUE(read.ok()) << read.error();
+  const std::vector<PresetRoute> expected{{"a", "/x", "/y"}, {"d", "/x", "/y"}};  // the last text of d is reported
+  EXPECT_EQ(read->presets.at(0)->routes, expected);
+  EXPECT_GE(read->problems.size(), 6u);
+}
 
 TEST_F(PresetText, RoundTripIsExact) {
   Random random(1, "text");

@@ -19,6 +19,7 @@
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear.h"
 #include "sim/mocap/mocap_source.h"
+#include "sim/routes/route.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
 #include "sim/tendons/tendon.h"
@@ -73,10 +74,10 @@ constexpr const char* kHeader = "address\tlegacy address\tkind\ttype\tunit\trang
 
 std::vector<const PropertyTable*> described_classes() {
   std::vector<const PropertyTable*> all = {
-      &sim::World::table(),     &sim::Body::table(), &sim::Part::table(),   &sim::Joint::table(),
-      &sim::Motor::table(),     &sim::Gear::table(), &sim::imu_table(),     &sim::range_finder_table(),
-      &sim::zone_table(),       &sim::touch_table(), &sim::Tendon::table(), &sim::MocapSource::table(),
-      &sim::MocapJoint::table()};
+      &sim::World::table(),      &sim::Body::table(), &sim::Part::table(),   &sim::Joint::table(),
+      &sim::Motor::table(),      &sim::Gear::table(), &sim::imu_table(),     &sim::range_finder_table(),
+      &sim::zone_table(),        &sim::touch_table(), &sim::Tendon::table(), &sim::MocapSource::table(),
+      &sim::MocapJoint::table(), &sim::Route::table()};
   const sim::BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "engine/commands/route_commands.h"
 #include "sim/mocap/mocap_list.h"
 #include "sim/shapes/shape.h"
 #include "sim/visuals/visuals.h"
@@ -50,6 +51,7 @@ constexpr SpecialAddress kSpecialAddresses[] = {
     {"/list/gears", "", "Answers with the names of the gears."},
     {"/list/fixtures", "", "Answers with the names of the lighting fixtures."},
     {"/list/groups", "", "Answers with the names of the group behaviors."},
+    {"/list/routes", "", "Answers with the names of the routes."},
     {"/list/shapes", "", "Answers with the names of the shapes."},
     {"/list/scenes", "", "Answers with the names of the scenes in the folder of the current scene."},
     {"/transport/scene", "scene", "Starts another scene of that folder and drops all overrides."},
@@ -63,6 +65,9 @@ constexpr SpecialAddress kSpecialAddresses[] = {
     {"/preset/morph", "preset preset amount", "Blends two presets; amount 0: the first, 1: the second."},
     {"/preset/delete", "name", "Deletes a preset."},
     {"/preset/rename", "name name", "Renames a preset, given by name or number. Its values and its position stay."},
+    {"/route/add", "name from to", "Adds a route from one address or pattern to another."},
+    {"/route/connect", "name from to", "Gives a route other addresses; its settings stay."},
+    {"/route/remove", "name", "Removes a route."},
     {"/take/record", "[name]", "Resets the scene and records all input from its start, so that it can be replayed."},
     {"/take/stop", "", "Ends the recording of a take and completes its file, or ends the take that plays."},
     {"/take/play", "[name]",
@@ -136,13 +141,12 @@ MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
   for (const PropertyTable* table : legacy_classes()) add_class(*table);
   for (const PropertyTable* table : extra_classes) add_class(*table);
   for (const SpecialAddress& special : kSpecialAddresses) {
-    const bool of_presets = special.address.starts_with("/preset/");
-    const bool of_takes = special.address.starts_with("/take/");
-    entries_[std::string(special.address)].handler = of_presets ? &MessageDispatcher::execute_preset
-                                                     : of_takes ? &MessageDispatcher::request_take
-                                                                : &MessageDispatcher::answer_list;
+    const auto is_of = [&](std::string_view group) { return special.address.starts_with(group); };
+    entries_[std::string(special.address)].handler = is_of("/preset/")  ? &MessageDispatcher::execute_preset
+                                                     : is_of("/take/")  ? &MessageDispatcher::request_take
+                                                     : is_of("/route/") ? &MessageDispatcher::execute_route
+                                                                        : &MessageDispatcher::answer_list;
   }
-  // the other handlers
   entries_["/list/presets"].handler = &MessageDispatcher::execute_preset;
   entries_["/physics/part/force"].handler = &MessageDispatcher::part_force;
   entries_["/physics/part/hold"].handler = &MessageDispatcher::part_hold;
@@ -248,7 +252,8 @@ Outcome MessageDispatcher::execute_path(const Message& message) {
 Outcome MessageDispatcher::unknown_path(std::string_view address, const std::string& error) {
   const bool shape = address.starts_with("/visuals/shape/") && std::ranges::count(address, '/') > 3;
   const bool is_own_path = shape || address.starts_with("/physics/body/") || address.starts_with("/physics/group/") ||
-                           address.starts_with("/physics/mocap/") || !address.starts_with("/");
+                           address.starts_with("/physics/mocap/") || address.starts_with("/physics/route/") ||
+                           !address.starts_with("/");
   if (is_own_path) return Outcome::unknown(hints_.consume() ? find_property(store_, address).error() : error);
   return Outcome::unknown(
       fmt::format("there is no address {}{}", printable(address), query_handler_.address_hint(address, addresses_)));
@@ -469,6 +474,11 @@ Outcome MessageDispatcher::execute_preset(const Message& message) {
   std::array<char, 96> buffer;
   const std::string_view address = normalized_address(message.address, buffer);
   return presets_->execute(address.substr(address.find_last_of('/') + 1), message, world_);
+}
+
+Outcome MessageDispatcher::execute_route(const Message& message) {
+  std::array<char, 96> buffer;
+  return edit_routes(world_, normalized_address(message.address, buffer), message.args);
 }
 
 Outcome MessageDispatcher::request_take(const Message& message) {

@@ -110,6 +110,7 @@ class MessageDispatcher {
   Outcome answer_get(const Message& message);
   Outcome reject_unsupported(const Message& message);
   Outcome execute_preset(const Message& message);
+  Outcome execute_route(const Message& message);
   Outcome request_take(const Message& message);
 
   sim::World& world_;

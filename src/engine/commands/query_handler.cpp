@@ -33,8 +33,8 @@ Outcome answered(Message answer, std::size_t query_args) {
 }  // namespace
 
 Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) const {
-  const bool of_world =
-      kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups" || kind == "fixtures";
+  const bool of_world = kind == "bodies" || kind == "shapes" || kind == "gears" || kind == "groups" ||
+                        kind == "fixtures" || kind == "routes";
   if (!of_world) return list_of_body(kind, args);
   if (!args.empty()) return Outcome::rejected("takes no arguments");
   Message answer{fmt::format("/list/{}", kind), {}};
@@ -46,6 +46,7 @@ Outcome QueryHandler::list(std::string_view kind, std::span<const Arg> args) con
   if (kind == "gears") add_names(world_.gears().list());
   if (kind == "fixtures") add_names(world_.visuals().fixtures().list());
   if (kind == "groups") add_names(world_.behaviors().groups());
+  if (kind == "routes") add_names(world_.behaviors().routes().list());
   return answered(std::move(answer), 0);
 }
 

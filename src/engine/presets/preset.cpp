@@ -109,11 +109,19 @@ bool PresetBuilder::add(std::string_view path, PresetLayout layout, const std::v
   return true;
 }
 
+bool PresetBuilder::add_route(PresetRoute route) {
+  const bool valid = !name_error(route.name) && route.from.starts_with('/') && route.to.starts_with('/');
+  if (!valid || std::ranges::find(routes_, route.name, &PresetRoute::name) != routes_.end()) return false;
+  routes_.push_back(std::move(route));
+  return true;
+}
+
 std::shared_ptr<const Preset> PresetBuilder::finish(std::string name, PresetSelection selection,
                                                     const std::shared_ptr<const PresetSchema>& shared) {
   const bool same = shared != nullptr && *shared == *schema_;
-  return std::make_shared<const Preset>(
-      Preset{std::move(name), std::move(selection), same ? shared : std::move(schema_), std::move(values_)});
+  return std::make_shared<const Preset>(Preset{std::move(name), std::move(selection),
+                                               same ? shared : std::move(schema_), std::move(values_),
+                                               std::move(routes_)});
 }
 
 namespace {
@@ -134,8 +142,8 @@ class PresetAligner {
       if (a_.schema->layout(nodes[i]) != nullptr && b_.schema->layout(other) != nullptr)
         set_values(aligned_node[i], nodes[i], other);
     }
-    return {std::make_shared<const Preset>(Preset{a_.name, a_.selection, schema_, std::move(in_a_)}),
-            std::make_shared<const Preset>(Preset{b_.name, b_.selection, schema_, std::move(in_b_)}), 0};
+    return {std::make_shared<const Preset>(Preset{a_.name, a_.selection, schema_, std::move(in_a_), a_.routes}),
+            std::make_shared<const Preset>(Preset{b_.name, b_.selection, schema_, std::move(in_b_), b_.routes}), 0};
   }
 
  private:
@@ -200,7 +208,7 @@ class PresetAligner {
 Blend align(const std::shared_ptr<const Preset>& a, const std::shared_ptr<const Preset>& b) {
   if (a->schema == b->schema) return {a, b, 0};
   if (*a->schema == *b->schema)
-    return {a, std::make_shared<const Preset>(Preset{b->name, b->selection, a->schema, b->values}), 0};
+    return {a, std::make_shared<const Preset>(Preset{b->name, b->selection, a->schema, b->values, b->routes}), 0};
   return PresetAligner(*a, *b).run();
 }
 

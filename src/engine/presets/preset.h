@@ -100,11 +100,19 @@ struct PresetSelection {
   bool operator==(const PresetSelection&) const = default;
 };
 
+/// A route in a preset. Its settings are values, like those of all nodes.
+struct PresetRoute {
+  std::string name;
+  std::string from, to;
+  bool operator==(const PresetRoute&) const = default;
+};
+
 struct Preset {
   std::string name;
   PresetSelection selection;
   std::shared_ptr<const PresetSchema> schema;
-  std::vector<double> values;  ///< schema->value_count() values.
+  std::vector<double> values;            ///< schema->value_count() values.
+  std::vector<PresetRoute> routes = {};  ///< Those of its schema; a recall adds the ones that do not exist.
 };
 
 using PresetList = std::vector<std::shared_ptr<const Preset>>;
@@ -128,6 +136,8 @@ class PresetBuilder {
   /// Adds a node with its properties, if there are any, and their values. `path` must begin with /. False if the node
   /// has properties already.
   bool add(std::string_view path, PresetLayout layout, const std::vector<double>& values);
+  /// Adds a route. False if its name or an address is not valid, or the name is in use.
+  bool add_route(PresetRoute route);
   /// Returns the preset. `shared`: schema of another preset, which is shared if it is equal; or null.
   std::shared_ptr<const Preset> finish(std::string name, PresetSelection selection,
                                        const std::shared_ptr<const PresetSchema>& shared = nullptr);
@@ -137,6 +147,7 @@ class PresetBuilder {
 
   std::shared_ptr<PresetSchema> schema_;
   std::vector<double> values_;
+  std::vector<PresetRoute> routes_;
   std::unordered_map<std::string, std::uint32_t> nodes_;    // by parent and name
   std::unordered_map<std::string, std::uint32_t> layouts_;  // by their content
 };

@@ -13,6 +13,7 @@
 #include "base/log/log.h"
 #include "base/plural.h"
 #include "base/text.h"
+#include "engine/presets/routes.h"
 
 namespace limber::engine {
 
@@ -337,6 +338,11 @@ Outcome Presets::store(const Message& message, sim::World& world) {
                                                                    : PresetSelection{};
   auto captured = capturer_.capture(world.store(), command->name, selection);
   if (!captured) return Outcome::rejected(captured.error());
+  if (std::vector<PresetRoute> routes = routes_of(world, *(*captured)->schema); !routes.empty()) {
+    auto with_routes = std::make_shared<Preset>(**captured);
+    with_routes->routes = std::move(routes);
+    *captured = std::move(with_routes);
+  }
   if (existing == bank_.list.end()) {
     bank_.list.push_back(std::move(*captured));
   } else {
@@ -431,6 +437,7 @@ Result<std::shared_ptr<const PresetBinding>> Presets::bind(const Store& store, c
 // Applies a blend, at once or as a morph; returns a description of values that were skipped.
 Result<std::string> Presets::apply(sim::World& world, const Blend& blend, double seconds, Easing easing) {
   Store& store = world.store();
+  restore_routes(world, blend);
   const auto binding = bind(store, blend);
   if (!binding) return Error{fmt::format("{}: {}", name_of(blend), binding.error())};
   if (seconds > 0 && morphs_.full())
@@ -456,6 +463,7 @@ Result<std::string> Presets::apply(sim::World& world, const Blend& blend, double
 }
 
 void Presets::reapply(sim::World& world, const Blend& blend) {
+  restore_routes(world, blend);
   const auto binding = bind(world.store(), blend);
   if (binding) (void)limber::engine::recall(world.store(), **binding, blend);
 }

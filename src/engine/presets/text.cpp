@@ -28,6 +28,7 @@ constexpr std::size_t kMaxProblems = 100;
 constexpr std::size_t kMaxPath = 4096;
 constexpr std::size_t kMaxProperties = 256;  // per node
 constexpr std::size_t kMaxNumbers = 4096;    // per property
+constexpr std::size_t kRouteTexts = 3;       // name, from, to
 
 std::string json_quoted(std::string_view text) {
   return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -60,6 +61,13 @@ void add_preset(std::string& out, const Preset& preset) {
   add_patterns(out, "except", preset.selection.except);
   if (preset.selection.poses) out += ",\n      \"poses\": true";
   if (preset.selection.velocities) out += ",\n      \"velocities\": true";
+  const char* separator = ",\n      \"routes\": [";
+  for (const PresetRoute& route : preset.routes) {
+    out += fmt::format("{}\n        [{}, {}, {}]", separator, json_quoted(route.name), json_quoted(route.from),
+                       json_quoted(route.to));
+    separator = ",";
+  }
+  if (!preset.routes.empty()) out += "\n      ]";
   out += ",\n      \"values\": {";
   const PresetSchema& schema = *preset.schema;
   const char* comma = "";
@@ -161,7 +169,19 @@ class PresetParser : public Json::json_sax_t {
   }
 
  private:
-  enum class Context : std::uint8_t { start, root, presets, preset, patterns, nodes, properties, list, end };
+  enum class Context : std::uint8_t {
+    start,
+    root,
+    presets,
+    preset,
+    patterns,
+    routes,
+    route,
+    nodes,
+    properties,
+    list,
+    end
+  };
   // The objects and arrays that are expected.
   struct Nesting {
     Context outside;
@@ -174,6 +194,7 @@ class PresetParser : public Json::json_sax_t {
       {Context::presets, true, "", Context::preset},       {Context::preset, true, "values", Context::nodes},
       {Context::preset, false, "rows", Context::patterns}, {Context::preset, false, "except", Context::patterns},
       {Context::nodes, true, "", Context::properties},     {Context::properties, false, "", Context::list},
+      {Context::preset, false, "routes", Context::routes}, {Context::routes, false, "", Context::route},
   };
 
   bool fail(std::string why) {
@@ -194,6 +215,7 @@ class PresetParser : public Json::json_sax_t {
     if (context_ == Context::preset) begin_preset();
     if (context_ == Context::properties) begin_node();
     if (context_ == Context::list) value_ = Json::array();
+    if (context_ == Context::route) route_.clear();
     return true;
   }
 
@@ -215,6 +237,7 @@ class PresetParser : public Json::json_sax_t {
     }
     if (context_ == Context::preset) end_preset();
     if (context_ == Context::properties) end_node();
+    if (context_ == Context::route) end_route();
     if (context_ == Context::list) end_value();
     context_ =
         context_ == Context::root ? Context::end : std::ranges::find(kNestings, context_, &Nesting::inside)->outside;
@@ -234,10 +257,15 @@ class PresetParser : public Json::json_sax_t {
     }
     if (context_ == Context::start) return fail("it is not a preset file");
     if (context_ == Context::root && key_ == kPresetVersionKey && v.is_number()) return check_version(v.get<double>());
-    const bool expected =
-        (context_ == Context::preset && set_member(v)) || (context_ == Context::patterns && add_pattern(v));
-    if (!expected) report_unexpected(v);
+    if (!accept(v)) report_unexpected(v);
     return true;
+  }
+
+  // False if the value is not expected here.
+  bool accept(const Json& v) {
+    if (context_ == Context::preset) return set_member(v);
+    if (context_ == Context::route) return add_route_text(v);
+    return context_ == Context::patterns && add_pattern(v);
   }
 
   // Sets a member of the preset; false if it has no such member.
@@ -257,6 +285,18 @@ class PresetParser : public Json::json_sax_t {
   bool add_pattern(const Json& v) {
     if (v.is_string()) (key_ == "rows" ? selection_.include : selection_.except).push_back(v.get<std::string>());
     return v.is_string();
+  }
+
+  bool add_route_text(const Json& v) {
+    if (!v.is_string() || route_.size() >= kRouteTexts) return false;
+    route_.push_back(v.get<std::string>());
+    return true;
+  }
+
+  void end_route() {
+    if (route_.size() == kRouteTexts && builder_.add_route({route_[0], route_[1], route_[2]})) return;
+    problem(fmt::format("preset '{}': a route must be a list of its name and two addresses, and its name unique",
+                        printable(name_)));
   }
 
   void report_unexpected(const Json& v) {
@@ -334,6 +374,7 @@ class PresetParser : public Json::json_sax_t {
   PresetSelection selection_;
   std::string name_;
   std::string path_;
+  std::vector<std::string> route_;
   PresetLayout layout_;
   std::vector<double> numbers_;
   std::string property_name_;

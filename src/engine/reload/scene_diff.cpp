@@ -281,9 +281,9 @@ bool SceneDiff::empty() const {
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
   const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
   const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears,
-                                     removed_tendons, mocap.removed);
+                                     removed_tendons, mocap.removed, routes.removed);
   return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears) &&
-         all_empty(tendons) && fixtures.empty() && all_empty(mocap.sources) &&
+         all_empty(tendons) && fixtures.empty() && all_empty(mocap.sources) && all_empty(routes.list) &&
          std::ranges::all_of(behaviors, all_empty);
 }
 
@@ -407,6 +407,18 @@ void compare_fixtures(const SceneSpec& before, const SceneSpec& now, SceneDiff& 
   }
 }
 
+void compare_routes(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
+  for (const RouteDescription& route : now.routes) {
+    const RouteDescription* const old_route = find_named(before.routes, route.name);
+    out.routes.list.push_back({old_route != nullptr,
+                               old_route != nullptr && old_route->from == route.from && old_route->to == route.to,
+                               mask_to_set(old_route == nullptr ? nullptr : &old_route->values, route.values)});
+  }
+  for (const RouteDescription& old_route : before.routes) {
+    if (find_named(now.routes, old_route.name) == nullptr) out.routes.removed.push_back(old_route.name);
+  }
+}
+
 }  // namespace
 
 SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
@@ -437,6 +449,7 @@ SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
   compare_tendons(before, now, out);
   compare_fixtures(before, now, out);
   compare_mocap(before, now, out);
+  compare_routes(before, now, out);
   compare_behaviors(before, now, out);
   return out;
 }

@@ -96,6 +96,20 @@ struct MocapDiffs {
   std::vector<std::string> removed;  ///< Names of removed ones.
 };
 
+/// Changes of a route.
+struct RouteDiff {
+  bool in_old_spec = false;   ///< It is in the old spec.
+  bool same_ends = true;      ///< It has the same addresses.
+  std::uint64_t changed = 0;  ///< Properties to set.
+
+  bool empty() const { return in_old_spec && same_ends && changed == 0; }
+};
+
+struct RouteDiffs {
+  std::vector<RouteDiff> list;       ///< For each new route.
+  std::vector<std::string> removed;  ///< Names.
+};
+
 struct SceneDiff {
   std::uint64_t world = 0;                                    ///< Properties of the world to set.
   std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
@@ -119,6 +133,7 @@ struct SceneDiff {
   std::vector<std::pair<std::string, std::string>> removed_tendons;
   FixtureDiffs fixtures;
   MocapDiffs mocap;
+  RouteDiffs routes;
   bool order_changed = false;  ///< The order of the behaviors differs.
 
   bool empty() const;

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "base/check.h"
+#include "base/log/log.h"
 #include "engine/reload/behavior_patch.h"
+#include "sim/behavior/behavior_list.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear_list.h"
 #include "sim/mocap/mocap_list.h"
@@ -115,6 +117,7 @@ class PatchApplier {
     apply_fixtures();
     apply_mocap();
     apply_behaviors(patch_, bodies_, saved_behaviors_);
+    apply_routes();
     for (const std::size_t removed : patch_.diff.removed_shapes) {
       if (sim::Shape* const shape = find_alive<sim::Shape>(patch_.world, objects.shapes[removed]))
         patch_.world.shapes().remove(*shape);
@@ -308,6 +311,36 @@ class PatchApplier {
       order.push_back(live);
     }
     sources.move_to_front(order);
+  }
+
+  // A route that the scene has given other addresses gets them; one that a controller has connected otherwise keeps its
+  // own.
+  void apply_routes() {
+    sim::RouteList& routes = patch_.world.behaviors().routes();
+    for (const std::string& name : patch_.diff.routes.removed) {
+      if (sim::Route* const removed = routes.find(name)) routes.remove(*removed);
+    }
+    std::vector<sim::Route*> order;
+    for (std::size_t i = 0; i < patch_.now.routes.size(); i++) {
+      const RouteDescription& now = patch_.now.routes[i];
+      const NodeId source = patch_.candidate.behaviors().routes().list()[i]->id();
+      const RouteDiff& diff = patch_.diff.routes.list[i];
+      sim::Route* live = routes.find(now.name);
+      if (live == nullptr) {
+        const Result<sim::Route*> added = routes.add(now.name, now.from, now.to);
+        if (!added) {
+          log_warning("route '{}' was not added: {}", now.name, added.error());
+          continue;
+        }
+        live = *added;
+        set_properties(source, live->id(), described_mask(sim::Route::table()));
+      } else {
+        if (!diff.same_ends) (void)routes.connect(*live, now.from, now.to);
+        set_properties(source, live->id(), diff.changed);
+      }
+      order.push_back(live);
+    }
+    routes.move_to_front(order);
   }
 
   static bool same_points(const sim::Tendon& tendon, const std::vector<sim::Tendon::Point>& points) {

@@ -182,6 +182,8 @@ SceneSpec describe(const sim::World& world) {
     out.groups.push_back({group->name(), group->type().name, group->type().group_table, group->setup(),
                           spec_values_of(world.store(), group->id())});
   }
+  for (const auto& route : world.behaviors().routes().list())
+    out.routes.push_back({route->name(), route->from(), route->to(), spec_values_of(world.store(), route->id())});
   out.behavior_order = world.behaviors().order().keys();
   return out;
 }

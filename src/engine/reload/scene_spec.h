@@ -93,6 +93,11 @@ struct GearDescription {
   std::string body_b, joint_b;
   SpecValues values;
 };
+struct RouteDescription {
+  std::string name;
+  std::string from, to;
+  SpecValues values;
+};
 struct TendonDescription {
   struct Point {
     std::string body, part;
@@ -140,6 +145,7 @@ struct SceneSpec {
   std::vector<TendonDescription> tendons;
   std::vector<FixtureDescription> fixtures;
   std::vector<MocapDescription> mocap;
+  std::vector<RouteDescription> routes;
   std::vector<GroupDescription> groups;
   std::vector<std::string> behavior_order;  ///< BehaviorOrder::keys()
 };
