@@ -7,6 +7,19 @@
 
 namespace limber {
 
+/// A template of messages: the values of each object, or of all objects of a body.
+struct StreamMessage {
+  std::string address;  ///< With {name}, {body} and {index} for those of the object.
+  std::string objects;  ///< Address or pattern of objects.
+  /// Properties, such as "position", "position.x" or "-position.y", in the order of the arguments; or texts with
+  /// {name}, {body} or {index}.
+  std::vector<std::string> values;
+  double scale = 1;       ///< Factor of the numbers.
+  bool per_body = false;  ///< One message for all objects of a body, instead of one for each object.
+
+  bool operator==(const StreamMessage&) const = default;
+};
+
 /// A host that receives frames, and the contents of its frames.
 struct StreamTarget {
   std::string host = "127.0.0.1";
@@ -15,7 +28,8 @@ struct StreamTarget {
   bool pos = true, rot = true, relrot = true, relpos = false;
   std::string bodies = "*";  ///< Body name or OSC pattern.
   int bundle = -1;  ///< Bundle size in bytes: 1472, 8192 or 65504; 0: no bundles; -1: none up to 20 bodies, else 1472.
-  bool errors = false;  ///< Send /error messages too.
+  bool errors = false;                       ///< Send /error messages too.
+  std::vector<StreamMessage> messages = {};  ///< More messages, described by templates.
 
   bool operator==(const StreamTarget&) const = default;
 };

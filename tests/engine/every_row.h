@@ -11,6 +11,7 @@
 #include "engine/everything.h"
 #include "properties/catalog.h"
 #include "sim/mocap/mocap_source.h"
+#include "sim/routes/route.h"
 #include "sim/world/world.h"
 #include "support/world_objects.h"
 
@@ -51,6 +52,7 @@ inline std::vector<Sample> samples(const Store& store) {
       {&sim::Tendon::table(), arm + "/tendon/cord", {}, "sim:body('arm'):tendon('cord')"},
       {&sim::MocapSource::table(), "/physics/mocap/dancer", {}, "sim:mocap('dancer')"},
       {&sim::MocapJoint::table(), "/physics/mocap/dancer/joint/hips", {}, "sim:mocap('dancer'):joint('hips')"},
+      {&sim::Route::table(), "/physics/route/link", {}, "sim:route('link')"},
       {&store.table(find_property(store, "/scene").value().node), "/scene", {}, "params"},
   };
 }

@@ -29,6 +29,7 @@ body:add_behavior("random_force", "wind", { parts = "hat" })
 sim:add_body("free"):add_part("free", shape, { position = vec3(0, 4, 2) })
 body:copy("twin", { position = vec3(0, 2, 1) })
 sim:add_group_behavior("cohesion", "swarm", { bodies = { "arm", "twin" } })
+sim:add_route("link", { from = "/physics/sim/timestep", to = "/physics/sim/speed" })
 params {
   { "wind", 0, min = 0, max = 10, unit = "N", doc = "A number." },
   { "where", vec3(0, 0, 1), min = -1, max = 2, doc = "A vec3." },

@@ -48,7 +48,11 @@
 ---A dancer is a node with joints, whose places, rotations and features are readouts. [Motion
 ---capture](../../howto/mocap.md) shows how to use them.
 
----@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, tendons, behaviors, gears and fixtures.
+---@page routes Routes: let readouts and settings set other properties, without code in each tick.
+---A route reads a property and sets another one, in each tick. It is a node of the property tree: its settings are OSC
+---addresses, and presets, undo and takes contain them. [Routes](../../howto/routes.md) shows how to use them.
+
+---@page lists Lists and patterns: walk through bodies, parts, joints, motors, sensors, tendons, behaviors, gears, fixtures and routes.
 ---A list such as `body.parts` has numbers from 1 to `#body.parts`. Called like a function, with or without a pattern, it
 ---gives the objects one after the other: `for part in body:parts("leg*") do … end`. A pattern has `*` (any text), `?` (one
 ---character), `[1-3]`, `[!a]` and `{left,right}`. Instead of a pattern, it also accepts a list of names and objects.

@@ -10,6 +10,7 @@
 ---@field fixtures fixture_list # read-only. All lighting fixtures, in the order of their creation; call it to iterate over those that match a pattern.
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@field mocaps mocap_list # read-only. All sources of motion capture, in the order of their creation.
+---@field routes route_list # read-only. All routes, in stream order; call it to iterate over those that match a pattern.
 ---@properties sim
 ---@error sim.gravty = vec3() --> sim has no property 'gravty'; did you mean 'gravity'?
 ---@error sim.gravity = 9.81 --> sim: 'gravity' takes a vec3, not 9.81

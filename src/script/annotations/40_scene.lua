@@ -118,11 +118,23 @@ function osc:listen(port) end
 ---@field bodies? string|body # A name or a pattern, default all.
 ---@field bundle? integer|false|"off" # 1472, 8192 or 65504 bytes, or "off".
 ---@field errors? boolean # default false. Send error messages to this target too.
+---@field messages? stream_message[] # Messages of your own; then `streams` is empty unless it is set.
+
+---A template of messages: the values of each object that a pattern matches, in each frame.
+---@class stream_message
+---@field address string # With `{name}`, `{body}` and `{index}`, which become those of the object.
+---@field objects string # Address or pattern of objects, such as "/physics/body/*/part/*".
+---@field values string|string[] # Properties, such as "position", "rotation.w" or "-position.y", or texts with `{name}`, `{body}` or `{index}`.
+---@field scale? number # default 1. Factor of all numbers: 100 for cm.
+---@field per? "object"|"body" # default "object". "body": one message with the values of all objects of a body.
+---@see osc:stream_to
+---@example osc_templates
 
 ---Streams the joints' poses to a host, instead of the default.
 ---@param target string # host:port
 ---@param opts? stream_opts
 ---@error osc:stream_to("127.0.0.1:9104", { streams = "positions" }) --> osc:stream_to: there is no stream 'positions'; there are: pos, relpos, relrot, rot
+---@error osc:stream_to("127.0.0.1:9104", { messages = { { address = "p", objects = "/physics/sim", values = "time" } } }) --> osc:stream_to: message 1: address begins with /, not 'p'
 ---@error osc:stream_to("127.0.0.1") --> '127.0.0.1' is not an address; write "host:port", such as "127.0.0.1:9000"
 ---@see stream_opts
 ---@example osc_ports

@@ -39,7 +39,8 @@ enum Kind : std::int32_t {
   tendons,
   fixtures,
   mocap_sources,
-  mocap_joints
+  mocap_joints,
+  routes
 };
 
 // The i-th object of a list, or a null id past the end. For i == -1 the length of the list.
@@ -71,6 +72,7 @@ std::int32_t list_at(ScriptContext& c, NodeId id, std::int32_t kind, std::int32_
   if (kind == shapes) return item(c, c.world->shapes().list(), i);
   if (kind == gears) return item(c, c.world->gears().list(), i);
   if (kind == fixtures) return item(c, c.world->visuals().fixtures().list(), i);
+  if (kind == routes) return item(c, c.world->behaviors().routes().list(), i);
   if (kind == groups) {
     const std::vector<sim::BehaviorGroup*> all = c.world->behaviors().groups();
     return item<sim::BehaviorGroup>(c, all, i);
@@ -209,6 +211,10 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
     const sim::MocapList& all = world.sensing().mocap();
     return id_or_error(context, all.find(wanted), all.list(), "mocap source", "there is", wanted);
   }
+  if (kind == routes) {
+    const sim::RouteList& all = world.behaviors().routes();
+    return id_or_error(context, all.find(wanted), all.list(), "route", "there is", wanted);
+  }
   const NodeId id = id_of(slot, generation);
   if (kind == groups) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
@@ -225,7 +231,7 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
 
 double order(void* c, std::int32_t slot, std::int32_t generation) {
   // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors, tendons; then shapes, gears,
-  // groups, fixtures, sources of motion capture with their joints; removed objects last.
+  // groups, fixtures, sources of motion capture with their joints, routes; removed objects last.
   const ScriptContext& context = context_of(c);
   const sim::World& world = *context.world;
   const NodeId id = id_of(slot, generation);
@@ -274,6 +280,9 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     const sim::MocapSource& source = joint->source();
     return kShapes * 1.4375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), &source)) + 1 +
            static_cast<double>(index_in(source.joints(), joint));
+  }
+  if (const sim::Route* route = object_of<sim::Route>(context, id)) {
+    return kShapes * 1.46875 + static_cast<double>(index_in(world.behaviors().routes().list(), route));
   }
   if (const sim::Shape* shape = object_of<sim::Shape>(context, id)) {
     return kShapes + static_cast<double>(index_in(world.shapes().list(), shape));

@@ -106,6 +106,18 @@ void osc_listen(void* c, std::int32_t port) {
   context_of(c).osc.config.listen.push_back({"127.0.0.1", static_cast<std::uint16_t>(port)});
 }
 
+void osc_template(void* c, const char* address, std::int32_t address_length, const char* objects,
+                  std::int32_t objects_length, const char* values, std::int32_t values_length, double scale,
+                  std::int32_t per_body) {
+  StreamMessage message{std::string(text_of(address, address_length)),
+                        std::string(text_of(objects, objects_length)),
+                        {},
+                        scale,
+                        per_body != 0};
+  for (const std::string_view value : split(text_of(values, values_length), '\n')) message.values.emplace_back(value);
+  context_of(c).osc.templates.push_back(std::move(message));
+}
+
 std::int32_t osc_target(void* c, const char* address, std::int32_t length, double rate, std::int32_t streams,
                         const char* bodies, std::int32_t bodies_length, std::int32_t bundle, std::int32_t errors) {
   ScriptContext& context = context_of(c);
@@ -122,6 +134,7 @@ std::int32_t osc_target(void* c, const char* address, std::int32_t length, doubl
   target.bodies = std::string(text_of(bodies, bodies_length));
   target.bundle = bundle;
   target.errors = errors != 0;
+  target.messages = std::exchange(context.osc.templates, {});
   context.osc.config.targets.push_back(std::move(target));
   return kOk;
 }

@@ -8,6 +8,7 @@
 #include "script/vm/guard.h"
 #include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
+#include "sim/routes/route.h"
 #include "sim/shapes/shape.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
@@ -124,7 +125,7 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &sim::Appearance::table()) return "visuals.look";
   const std::string& name = store.name(id);
   if (table == &sim::Body::table() || table == &sim::Shape::table() || table == &sim::Gear::table() ||
-      table == &sim::Fixture::table())
+      table == &sim::Fixture::table() || table == &sim::Route::table())
     return fmt::format("{} '{}'", table->name(), name);
   if (group_of(c, id) != nullptr) return fmt::format("group '{}'", name);
   const NodeId owner = store.parent(store.parent(id));

@@ -96,7 +96,8 @@ struct LoadedModels {
 /// OSC ports and handlers of the scene.
 struct SceneOsc {
   OscConfig config;
-  CommandOrigin sender;  ///< Of the message being handled.
+  std::vector<StreamMessage> templates;  ///< For the next target.
+  CommandOrigin sender;                  ///< Of the message being handled.
   bool handling_message = false;
   std::int32_t handlers = 0;           ///< Number registered by osc:on.
   std::int32_t disabled_handlers = 0;  ///< Number of these that are disabled because they failed or were stopped.

@@ -10,6 +10,7 @@
 #include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
 #include "sim/mocap/mocap_source.h"
+#include "sim/routes/route.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
 #include "sim/tendons/tendon.h"
@@ -79,12 +80,12 @@ const LimberMassTable* mass_table(void* c) {
 }
 
 std::int32_t class_table(void* c, std::int32_t which) {
-  const PropertyTable* const tables[] = {&sim::World::table(),   &sim::Body::table(),        &sim::Part::table(),
-                                         &sim::Joint::table(),   &sim::Motor::table(),       &sim::Shape::table(),
-                                         &sim::Visuals::table(), &sim::Camera::table(),      &sim::Appearance::table(),
-                                         &sim::Gear::table(),    &sim::imu_table(),          &sim::range_finder_table(),
-                                         &sim::zone_table(),     &sim::touch_table(),        &sim::Tendon::table(),
-                                         &sim::Fixture::table(), &sim::MocapSource::table(), &sim::MocapJoint::table()};
+  const PropertyTable* const tables[] = {
+      &sim::World::table(),       &sim::Body::table(),       &sim::Part::table(),    &sim::Joint::table(),
+      &sim::Motor::table(),       &sim::Shape::table(),      &sim::Visuals::table(), &sim::Camera::table(),
+      &sim::Appearance::table(),  &sim::Gear::table(),       &sim::imu_table(),      &sim::range_finder_table(),
+      &sim::zone_table(),         &sim::touch_table(),       &sim::Tendon::table(),  &sim::Fixture::table(),
+      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table()};
   return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 

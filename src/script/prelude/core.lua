@@ -26,6 +26,7 @@ ffi.cdef [[
   typedef struct fixture { const int32_t slot_, generation_; } fixture;
   typedef struct mocap { const int32_t slot_, generation_; } mocap;
   typedef struct mocap_joint { const int32_t slot_, generation_; } mocap_joint;
+  typedef struct route { const int32_t slot_, generation_; } route;
   typedef struct list { const int32_t slot_, generation_, kind_; } list;
   typedef struct link { const int32_t slot_, generation_, number_; } link;
   typedef struct timer { const int32_t number_, run_; } timer;

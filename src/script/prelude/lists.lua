@@ -10,10 +10,11 @@ local kinds = { [0] = { name = "body", list = "bodies" }, { name = "part", list 
   { name = "behavior", list = "behaviors" }, { name = "group", list = "groups" },
   { name = "gear", list = "gears" }, { name = "sensor", list = "sensors" },
   { name = "tendon", list = "tendons" }, { name = "fixture", list = "fixtures" },
-  { name = "mocap", list = "mocaps" }, { name = "mocap_joint", list = "joints" } }
+  { name = "mocap", list = "mocaps" }, { name = "mocap_joint", list = "joints" },
+  { name = "route", list = "routes" } }
 
 -- the contents of a list are collected on first use and cached until the structure of the world changes
-local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {} }
+local entries = { [0] = {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {} }
 
 local function gather(list, entry)
   local slot, generation, kind = list.slot_, list.generation_, list.kind_

@@ -13,7 +13,7 @@ local function class_of_table(number) return by_table[number] or P.make_class(nu
 P.class_of_table = class_of_table
 -- the classes of c_api's class_table, in its order
 P.class_names = { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear", "imu",
-  "range_finder", "zone", "touch", "tendon", "fixture", "mocap", "mocap_joint" }
+  "range_finder", "zone", "touch", "tendon", "fixture", "mocap", "mocap_joint", "route" }
 for i, name in ipairs(P.class_names) do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, properties = {} }
   class.number = i - 1

@@ -81,7 +81,7 @@ function osc.listen(self, port)
 end
 
 local stream_bits = { pos = 1, rot = 2, relrot = 4, relpos = 8 }
-local stream_opts = { rate = true, streams = true, bodies = true, bundle = true, errors = true }
+local stream_opts = { rate = true, streams = true, bodies = true, bundle = true, errors = true, messages = true }
 local function streams_of(streams)
   if streams == nil then return 7 end
   local bits, seen = 0, {}
@@ -99,6 +99,46 @@ local function streams_of(streams)
     if not seen[name] then bits, seen[name] = bits + bit, true end
   end
   return bits
+end
+local message_opts = { address = true, objects = true, values = true, scale = true, per = true }
+local max_messages, max_values = 64, 64
+local function check_value(value, subject)
+  P.check_text(value, subject)
+  if value:find("{", 1, true) then return end
+  if value:find("^%-?[%w_]+$") or value:find("^%-?[%w_]+%.[xyzw]$") then return end
+  fail("%s is a property, such as 'position', 'position.x' or '-position.y', or a text with {name}, {body} or {index}, not '%s'",
+    subject, value)
+end
+-- checks a template; returns what osc_template needs
+local function check_message(message, i)
+  local subject = "osc:stream_to: message " .. i
+  if type(message) ~= "table" then fail("%s is a table such as { address = …, objects = …, values = … }", subject) end
+  P.check_opts({ setters = {} }, message, message_opts, subject)
+  P.check_text(message.address, subject .. ": address")
+  if message.address:sub(1, 1) ~= "/" then fail("%s: address begins with /, not '%s'", subject, message.address) end
+  P.check_text(message.objects, subject .. ": objects")
+  if message.objects:sub(1, 1) ~= "/" then fail("%s: objects begins with /, not '%s'", subject, message.objects) end
+  local values, per = message.values, message.per or "object"
+  if type(values) == "string" then values = { values } end
+  if type(values) ~= "table" or #values == 0 or #values > max_values then
+    fail("%s: values is a list of 1 to %d properties", subject, max_values)
+  end
+  for k, value in ipairs(values) do check_value(value, subject .. ": value " .. k) end
+  if per ~= "object" and per ~= "body" then fail("%s: per is 'object' or 'body', not %s", subject, describe(per)) end
+  local scale = message.scale == nil and 1 or P.check_number(message.scale, subject .. ": scale")
+  local list = table.concat(values, "\n")
+  return { address = message.address, objects = message.objects, list = list, scale = scale, per_body = per == "body" }
+end
+local function add_messages(messages)
+  if messages == nil then return end
+  if type(messages) ~= "table" or #messages > max_messages then
+    fail("osc:stream_to: messages is a list of at most %d templates", max_messages)
+  end
+  local checked = {}
+  for i, message in ipairs(messages) do checked[i] = check_message(message, i) end
+  for _, m in ipairs(checked) do
+    api.osc_template(ctx, m.address, #m.address, m.objects, #m.objects, m.list, #m.list, m.scale, m.per_body and 1 or 0)
+  end
 end
 local function bundle_of(bundle)
   if bundle == nil then return -1 end
@@ -118,7 +158,10 @@ function osc.stream_to(self, target, opts)
   if P.class_of(bodies) == P.classes.body then bodies = bodies.name end
   P.check_text(bodies, "osc:stream_to: bodies")
   if opts.errors ~= nil and type(opts.errors) ~= "boolean" then fail("osc:stream_to: errors is true or false") end
-  P.handle_result(api.osc_target(ctx, target, #target, rate, streams_of(opts.streams), bodies, #bodies,
+  add_messages(opts.messages)
+  -- with messages of its own, a target gets only the streams that are named
+  local streams = opts.streams == nil and opts.messages and {} or opts.streams
+  P.handle_result(api.osc_target(ctx, target, #target, rate, streams_of(streams), bodies, #bodies,
     bundle_of(opts.bundle), opts.errors and 1 or 0))
 end
 

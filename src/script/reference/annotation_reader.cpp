@@ -9,6 +9,7 @@
 #include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
 #include "sim/mocap/mocap_source.h"
+#include "sim/routes/route.h"
 #include "sim/sensors/sensor.h"
 #include "sim/shapes/shape.h"
 #include "sim/tendons/tendon.h"
@@ -158,12 +159,12 @@ AnnotatedPage& open_page(std::vector<AnnotatedPage>& pages, BlockReader& reader)
 }  // namespace
 
 const PropertyTable& annotated_class(std::string_view name) {
-  const std::array<const PropertyTable*, 18> classes = {
-      &sim::World::table(),       &sim::Body::table(),      &sim::Part::table(),    &sim::Joint::table(),
-      &sim::Motor::table(),       &sim::Shape::table(),     &sim::Visuals::table(), &sim::Camera::table(),
-      &sim::Appearance::table(),  &sim::Gear::table(),      &sim::imu_table(),      &sim::range_finder_table(),
-      &sim::zone_table(),         &sim::touch_table(),      &sim::Tendon::table(),  &sim::Fixture::table(),
-      &sim::MocapSource::table(), &sim::MocapJoint::table()};
+  const std::array<const PropertyTable*, 19> classes = {
+      &sim::World::table(),       &sim::Body::table(),       &sim::Part::table(),    &sim::Joint::table(),
+      &sim::Motor::table(),       &sim::Shape::table(),      &sim::Visuals::table(), &sim::Camera::table(),
+      &sim::Appearance::table(),  &sim::Gear::table(),       &sim::imu_table(),      &sim::range_finder_table(),
+      &sim::zone_table(),         &sim::touch_table(),       &sim::Tendon::table(),  &sim::Fixture::table(),
+      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table()};
   for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }

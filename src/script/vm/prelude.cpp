@@ -30,6 +30,7 @@ std::span<const std::string_view> prelude_order() {
       "tendons.lua",
       "fixtures.lua",
       "mocap.lua",
+      "routes.lua",
       "visuals.lua",
       "callbacks.lua",
       "results.lua",

@@ -9,4 +9,5 @@ end
 local count = 0
 for motor in arm:motors("joint_[1-3]") do count = count + 1 end
 for part in arm:parts() do part.linear_damping = 0.1 end
-print(count, #sim.bodies, #sim.gears, #arm.behaviors, #arm.sensors, #arm.tendons, #sim.fixtures) --> 3 1 0 0 0 0 0
+print(count, #sim.bodies, #sim.gears, #arm.behaviors, #arm.sensors, #arm.tendons) --> 3 1 0 0 0 0
+print(#sim.fixtures, #sim.routes) --> 0 0
