@@ -20,6 +20,8 @@ std::int64_t period_of(const StreamTarget& config) {
 
 bool wants_streams(const StreamTarget& config) { return config.pos || config.rot || config.relrot || config.relpos; }
 
+bool wants_frames(const StreamTarget& config) { return wants_streams(config) || !config.messages.empty(); }
+
 }  // namespace
 
 Streams::Streams(engine::EngineLink& link, const engine::TransientOffsets& offsets, const NetClock& clock,
@@ -29,7 +31,7 @@ Streams::Streams(engine::EngineLink& link, const engine::TransientOffsets& offse
 void Streams::set_targets(const std::vector<ResolvedTarget>& targets) {
   std::vector<std::unique_ptr<Stream>> streams;
   for (const ResolvedTarget& target : targets) {
-    if (!wants_streams(target.config)) continue;
+    if (!wants_frames(target.config)) continue;
     const auto old = std::ranges::find_if(streams_, [&](const auto& s) { return s && s->target == target; });
     streams.push_back(old != streams_.end() ? std::move(*old)
                                             : std::make_unique<Stream>(target, offsets_, clock_.steady()));
@@ -49,6 +51,8 @@ void Streams::send_due(system::UdpSender& sender) {
     stream.next_due += ((now - stream.next_due) / period + 1) * period;
     if (!snapshot) snapshot = link_.snapshots.read();
     if (!snapshot) continue;
+    if (!stream.target.config.messages.empty()) send_templates(sender, stream);
+    if (!wants_streams(stream.target.config)) continue;
     const std::size_t bytes = send_frame(sender, stream, *snapshot);
     if (!stream.target.subscribed) continue;
     served += bytes;
@@ -68,26 +72,46 @@ std::size_t Streams::send_frame(system::UdpSender& sender, Stream& stream, const
   if (stream.target.subscribed && !may_serve_(stream.target.endpoint, bytes, stream.frame.datagram_sizes().size()))
     return 0;
   stream.frame.fill(snapshot);
-  const system::BatchResult result =
-      sender.send(stream.target.endpoint, stream.frame.bytes(), stream.frame.datagram_sizes(), stream.segmentation);
-  link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
-  if (link_.message_log.enabled()) log_frame(stream, result.sent);
-  if (result.error == 0) return bytes;
-  link_.counters.unsent.fetch_add(stream.frame.datagram_sizes().size() - result.sent, std::memory_order_relaxed);
-  if (const auto more = lost_log_.admit(clock_.steady())) {
-    log_warning("OSC out {}: {} of {} datagrams of a frame not sent: {}. Stream fewer bodies or at a lower rate{}",
-                endpoint_text(stream.target.endpoint), stream.frame.datagram_sizes().size() - result.sent,
-                stream.frame.datagram_sizes().size(), std::generic_category().message(result.error), *more);
-  }
+  send(sender, stream, stream.frame);
   return bytes;
 }
 
-void Streams::log_frame(const Stream& stream, std::size_t datagrams) {
-  std::span<const char> left = stream.frame.bytes();
-  for (const std::size_t size : stream.frame.datagram_sizes()) {
+// The values are those of the newest value snapshot; the next one is requested now. The first frame waits for one.
+void Streams::send_templates(system::UdpSender& sender, Stream& stream) {
+  const std::shared_ptr<const engine::ValueSnapshot> values = link_.value_snapshots.read();
+  (void)link_.request_value_snapshot();
+  if (values == nullptr) return;
+  stream.templates.lay_out(values->tree, stream.target.config);
+  if (stream.reported != stream.templates.problems()) {
+    stream.reported = stream.templates.problems();
+    for (const std::string& problem : stream.reported)
+      log_warning("OSC out {}: {}", endpoint_text(stream.target.endpoint), problem);
+  }
+  stream.templates.fill(*values);
+  send(sender, stream, stream.templates);
+}
+
+template <class Frame>
+void Streams::send(system::UdpSender& sender, Stream& stream, const Frame& frame) {
+  const std::span<const std::uint32_t> sizes = frame.datagram_sizes();
+  const system::BatchResult result = sender.send(stream.target.endpoint, frame.bytes(), sizes, stream.segmentation);
+  link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
+  if (link_.message_log.enabled()) log_frame(stream, frame.bytes(), sizes, result.sent);
+  if (result.error == 0) return;
+  link_.counters.unsent.fetch_add(sizes.size() - result.sent, std::memory_order_relaxed);
+  if (const auto more = lost_log_.admit(clock_.steady())) {
+    log_warning("OSC out {}: {} of {} datagrams of a frame not sent: {}. Stream fewer bodies or at a lower rate{}",
+                endpoint_text(stream.target.endpoint), sizes.size() - result.sent, sizes.size(),
+                std::generic_category().message(result.error), *more);
+  }
+}
+
+void Streams::log_frame(const Stream& stream, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
+                        std::size_t datagrams) {
+  for (const std::size_t size : sizes) {
     if (datagrams-- == 0) return;
-    log_sent(link_.message_log, stream.target.endpoint, left.first(size));
-    left = left.subspan(size);
+    log_sent(link_.message_log, stream.target.endpoint, bytes.first(size));
+    bytes = bytes.subspan(size);
   }
 }
 

@@ -4,12 +4,15 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "engine/output/engine_link.h"
 #include "net/osc/clock.h"
 #include "net/osc/sender.h"
 #include "net/osc/stream_frame.h"
+#include "net/osc/templates/template_frame.h"
 #include "net/osc/warning_throttle.h"
 
 namespace limber::osc {
@@ -41,13 +44,19 @@ class Streams {
     ResolvedTarget target;
     std::int64_t next_due;
     StreamFrame frame;
+    TemplateFrame templates;
+    std::vector<std::string> reported;  // problems of templates
     std::shared_ptr<const engine::BodyList>
         reported_too_large;    // the body list for which a too large message was reported
     bool segmentation = true;  // cleared if the route does not support segmentation offload
   };
 
   std::size_t send_frame(system::UdpSender& sender, Stream& stream, const engine::Snapshot& snapshot);
-  void log_frame(const Stream& stream, std::size_t datagrams);
+  void send_templates(system::UdpSender& sender, Stream& stream);
+  template <class Frame>
+  void send(system::UdpSender& sender, Stream& stream, const Frame& frame);
+  void log_frame(const Stream& stream, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
+                 std::size_t datagrams);
 
   engine::EngineLink& link_;
   const engine::TransientOffsets offsets_;
