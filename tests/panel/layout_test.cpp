@@ -87,7 +87,7 @@ TEST_P(WidgetLayout, HasNoOverlapsOrCuts) {
   fixture.frames(3);
   expect_no_overlap(fixture, size);
   for (const char* const tab :
-       {"tab:scene", "tab:behaviors", "tab:errors", "tab:osc", "tab:performance", "tab:plots"}) {
+       {"tab:scene", "tab:behaviors", "tab:errors", "tab:osc", "tab:performance", "tab:plots", "tab:routes"}) {
     if (!fixture.is_visible(tab)) continue;
     fixture.click(tab);
     fixture.move(0, 0);

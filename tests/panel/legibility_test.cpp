@@ -44,13 +44,17 @@ tip:add_touch("touch")
 for _, kind in ipairs { "alignment", "cohesion", "separation" } do
   sim:add_group_behavior(kind, "all_" .. kind)
 end
-for _, kind in ipairs { "force", "random_force", "random_rotation_target", "random_torque", "rotation_target", "speed",
+for _, kind in ipairs { "force", "random_force", "random_rotation_target", "random_torque", "rotation_target",
+                        "rotation_target_oscil", "speed",
                         "target_attraction", "torque", "volume" } do
   sim.bodies[1]:add_behavior(kind, "one_" .. kind)
 end
 sim:add_gear(joints[1], joints[2], 2)
 sim:add_fixture("the_first_spot_on_the_left_side", { profile = "moving_spot", targets = tip })
 sim.bodies[1]:add_tendon("cable", { points = { { "base", 0.2, 0, 0 }, { "tip" } } })
+sim:add_route("from_the_length_of_the_upper_segment_to_the_tip", { from = "/scene/the_length_of_the_upper_segment_of_the_left_leg",
+  to = "/physics/body/the_upper_segment_of_the_left_leg/part/tip/transparency" })
+sim:add_route("waits", { from = "/physics/sim/time", to = "/physics/body/the_upper_segment_of_the_right_leg/part/tip/mass" })
 )";
 
 struct Size {
@@ -327,7 +331,7 @@ TEST_P(Legibility, NothingIsCutInTheOtherPanels) {
   fixture.show.link.counters.sent = 987654321098765;
   log_error(
       "scene.lua:12: an error whose text is longer than any panel is wide, so that it has to be wrapped somewhere");
-  for (const char* const tab : {"tab:errors", "tab:osc", "tab:performance", "tab:plots", "tab:console"}) {
+  for (const char* const tab : {"tab:errors", "tab:osc", "tab:performance", "tab:plots", "tab:routes", "tab:console"}) {
     if (fixture.is_visible(tab)) fixture.click(tab);
     fixture.show.link.message_log.add(
         true, "127.0.0.1",

@@ -58,6 +58,8 @@ struct Confirmation {
 struct PanelRequests {
   std::string reveal_path;    ///< Address of an object that the tree scrolls to in the next frame; empty: none.
   bool focus_search = false;  ///< Moves the keyboard focus to the search field in the next frame.
+  std::string route_from;     ///< Address of a property for the source of a new route; empty: none.
+  std::string route_to;       ///< The same for its target.
   int move_behavior = 0;      ///< Moves the selected behavior: -1 earlier, 1 later.
   std::optional<Confirmation> confirmation;  ///< The question that the user is asked.
 };

@@ -35,6 +35,7 @@ std::string physics_text(const std::vector<std::string_view>& names) {
   const std::string name = lua_text(names[2]);
   if (n == 3 && names[1] == "group") return fmt::format("sim:group_behavior({})", name);
   if (n == 3 && names[1] == "gear") return fmt::format("sim:gear({})", name);
+  if (n == 3 && names[1] == "route") return fmt::format("sim:route({})", name);
   if (names[1] != "body") return {};
   if (n == 3) return fmt::format("sim:body({})", name);
   return n == 5 ? fmt::format("sim:body({}):{}({})", name, names[3], lua_text(names[4])) : std::string();

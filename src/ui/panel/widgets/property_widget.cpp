@@ -331,6 +331,21 @@ void property_hint(const PropertyHandle& handle) {
   ImGui::OpenPopupOnItemClick(kMenu, ImGuiPopupFlags_MouseButtonRight);
 }
 
+namespace {
+
+// Offers the property as an end of a route.
+void route_menu(GuiContext& context, const PropertyHandle& handle) {
+  const Property& property = *handle.ref.property;
+  if (property.width == 0 || property.type == PropertyType::text) return;
+  if (ImGui::Selectable("Route from here")) context.requests.route_from = handle.path;
+  context.names.add("menu:route_from");
+  if (!property.writable()) return;
+  if (ImGui::Selectable("Route to here")) context.requests.route_to = handle.path;
+  context.names.add("menu:route_to");
+}
+
+}  // namespace
+
 void property_menu(GuiContext& context, const PropertyHandle& handle) {
   const Property& property = *handle.ref.property;
   if (!ImGui::BeginPopup(kMenu)) return;
@@ -345,6 +360,7 @@ void property_menu(GuiContext& context, const PropertyHandle& handle) {
     if (ImGui::Selectable("Plot")) context.plots.push_back(handle.path);
     context.names.add("menu:plot");
   }
+  route_menu(context, handle);
   ImGui::EndPopup();
 }
 
