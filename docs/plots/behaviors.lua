@@ -112,6 +112,13 @@ for _, speed in ipairs { 0.02, 0.1 } do
   record(p, "speed = " .. speed, function() return joint.value end)
 end
 
+p = plot("rotation_target_oscil", { x = "time, s", y = "angle, rad" })
+for _, speed in ipairs { 0.02, 0.1 } do
+  local body, joint = hinged("rotation_target_oscil" .. speed * 100)
+  body:add_behavior("rotation_target_oscil", "swing", { speed = speed, oscil_interval = 800 })
+  record(p, "speed = " .. speed, function() return joint.value end)
+end
+
 p = plot("speed", { x = "speed of the part, m/s", y = "force along its way, N" })
 for _, amount in ipairs { 1, 2 } do
   sweep(p, "amount = " .. amount, 0, 3, 31, function(x, name, at)
