@@ -3,6 +3,8 @@
 #include <cmath>
 #include <complex>
 
+#include <fmt/format.h>
+
 #include "player.h"
 #include "sim/behavior/behavior_list.h"
 #include "support/skip.h"
@@ -306,6 +308,73 @@ TEST(BehaviorsLua, AreDocumented) {
       EXPECT_GT(property.doc.size(), 5u) << name << " " << property.name;
   }
   lua_scene.player.play(2);
+}
+
+// A ball of 1 kg without gravity: its velocity changes by force·dt in each tick.
+struct QualityBall {
+  explicit QualityBall(const std::string& opts)
+      : lua_scene(R"(
+sim.gravity = vec3()
+local ball = sim:add_body("ball")
+ball:add_part("ball", sim:add_sphere_shape("s", 0.1), { mass = 1 })
+ball:add_behavior("movement_quality", "quality", )" +
+                  opts + ")") {}
+  Vec3 velocity() { return lua_scene.player.body("ball").find_part("ball")->linear_velocity(); }
+  // Returns the force of the next tick.
+  Vec3 force() {
+    const Vec3 before = velocity();
+    lua_scene.player.engine->tick();
+    return (velocity() - before) / kTick;
+  }
+  BehaviorPlayer lua_scene;
+};
+
+TEST(MovementQuality, ForcesKeepTheirDirectionForTheInterval) {
+  QualityBall ball("{ quality = 'particles', force = 2 }");
+  Vec3 direction = ball.force();
+  int changes = 0;
+  for (int tick = 1; tick < 180; tick++) {
+    const Vec3 force = ball.force();
+    EXPECT_NEAR(glm::length(force), 2, 1e-3);
+    if (glm::distance(force, direction) > 1e-2) changes++;
+    direction = force;
+  }
+  EXPECT_EQ(changes, 9) << "every 0.3 s within 3 s";
+  QualityBall floating("{ quality = 'levitation' }");
+  floating.lua_scene.player.play(4.9);
+  EXPECT_NEAR(glm::length(floating.velocity()), 4.9, 0.05) << "one direction for 5 s";
+}
+
+// The force falls linearly to 0 during the morph, so the ball gets half of force·morph.
+TEST(MovementQuality, AMorphFadesTheOldQualityOut) {
+  QualityBall ball("{ quality = 'levitation', morph = 2 }");
+  ball.lua_scene.player.play(1);
+  ball.lua_scene.player.send("/physics/body/ball/behavior/quality/quality", {Arg::of("none")});
+  ball.lua_scene.player.play(2.5);
+  EXPECT_NEAR(glm::length(ball.velocity()), 1 + 1, 0.03);
+  EXPECT_NEAR(glm::length(ball.force()), 0, 1e-9);
+}
+
+TEST(MovementQuality, ThrustingMovesTheTwoMotorsNextToTheRoot) {
+  BehaviorPlayer lua_scene(R"(
+sim.gravity = vec3()
+local arm = sim:load_urdf("urdf/arm6.urdf", { name = "arm" })
+arm:add_behavior("movement_quality", "quality", { quality = "thrusting", reach = 0.8 })
+)");
+  Player& player = lua_scene.player;
+  double farthest = 0;
+  for (int tick = 0; tick < 300; tick++) {
+    player.engine->tick();
+    for (int motor = 1; motor <= 6; motor++) {
+      const double target = player.value(fmt::format("/physics/body/arm/motor/joint_{}/target", motor));
+      EXPECT_LE(std::abs(target), 0.8 + 1e-6);
+      if (motor > 2) {
+        EXPECT_EQ(target, 0) << motor;
+      }
+      farthest = std::max(farthest, std::abs(target));
+    }
+  }
+  EXPECT_GT(farthest, 0.2);
 }
 
 }  // namespace
