@@ -2,6 +2,7 @@
 #include "engine/reload/scene_runner.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,12 +59,29 @@ Result<void> SceneRunner::start() {
   return {};
 }
 
+// Explains the pace of a scene with large time steps, which is not that of ofxDabPhysics: it stepped every 10 ms of the
+// clock, whatever the time step.
+void SceneRunner::explain_pace() const {
+  constexpr double kStepOfOfxDabPhysics = 0.01;  // s of the clock
+  constexpr double kLargeStep = 0.05;            // s
+  const Session& session = *show_.session;
+  const double timestep = session.world.timestep();
+  const double speed = session.store.values(session.world.id(), sim::World::table().at("speed"))[0];
+  if (timestep < kLargeStep || speed != 1 || !show_.options.in_real_time()) return;
+  show_.output().warn_once(
+      fmt::format("sim.timestep is {0} s, so this scene makes {1} ticks per second and plays in real time. "
+                  "ofxDabPhysics plays it {2} times as fast: set sim.speed = {2} for that pace",
+                  number_text(timestep), number_text(std::round(10 / timestep) / 10),
+                  number_text(timestep / kStepOfOfxDabPhysics)));
+}
+
 // The initial overrides may require another run of the scene (parameters with `rerun`), before its on_start.
 void SceneRunner::begin_show() {
   if (reloader_.consume_rerun(*show_.session)) run_now(TakeSceneRun::Kind::rerun, true);
   show_.session->world.flush();
   if (show_.session->scene != nullptr) show_.session->scene->start();
   show_.presets.finish_planning(show_.session->world);
+  explain_pace();
 }
 
 bool SceneRunner::reset() {

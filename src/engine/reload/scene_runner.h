@@ -74,6 +74,7 @@ class SceneRunner {
   Result<void> apply_parameter(const Message& message);
   Result<void> apply_override(const Message& message, std::string_view option);
   void begin_show();
+  void explain_pace() const;
   ReloadRequest request_with(const AddedModel& model);
   Result<void> apply_added(ReloadCandidate& candidate, const std::string& previous);
 
