@@ -25,6 +25,8 @@ constexpr std::size_t kMaxLineWidth = 116;  // of a line of names, characters
 // the LuaCATS type: of the value on reading, plus the other types that may be assigned
 std::string type_text(const Property& property) {
   switch (property.type) {
+    case PropertyType::text:
+      return "string";
     case PropertyType::integer:
       return "integer";
     case PropertyType::boolean:

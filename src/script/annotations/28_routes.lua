@@ -28,9 +28,6 @@ function sim:route(key) end
 ---@class route
 ---@field name string # read-only. Its name.
 ---@field alive boolean # read-only. True while it exists.
----@field from string # read-only. Address or pattern of its source.
----@field to string # read-only. Address or pattern of its target.
----@field problem string # read-only. Why it has no effect; empty: it works.
 ---@properties route
 ---@see sim:add_route
 ---@example routes
