@@ -1,5 +1,6 @@
 // C API: names and relations of objects, lists in stream order.
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -229,25 +230,23 @@ std::int32_t find(void* c, std::int32_t slot, std::int32_t generation, std::int3
   return body == nullptr ? kRemoved : find_in_body(context, *body, kind, wanted);
 }
 
-double order(void* c, std::int32_t slot, std::int32_t generation) {
-  // Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors, tendons; then shapes, gears,
-  // groups, fixtures, sources of motion capture with their joints, routes; removed objects last.
-  const ScriptContext& context = context_of(c);
+// Sort order: bodies, each followed by its parts, joints, motors, behaviors, sensors, tendons; then shapes, gears,
+// groups, fixtures, sources of motion capture with their joints, routes; removed objects last.
+constexpr double kBodyOrder = 0x1p26;
+constexpr double kKindOrder = 0x1p23;
+constexpr double kWorldOrder = 0x1p52;
+
+std::optional<double> order_in_bodies(const ScriptContext& context, NodeId id) {
   const sim::World& world = *context.world;
-  const NodeId id = id_of(slot, generation);
-  constexpr double kBody = 0x1p26;
-  constexpr double kKind = 0x1p23;
-  constexpr double kShapes = 0x1p52;
   const auto within = [&](const sim::Body& body, double kind, std::size_t at) {
-    return kBody * static_cast<double>(1 + index_in(world.bodies(), &body)) + kKind * kind + static_cast<double>(at);
+    return kBodyOrder * static_cast<double>(1 + index_in(world.bodies(), &body)) + kKindOrder * kind +
+           static_cast<double>(at);
   };
   if (const sim::Body* body = object_of<sim::Body>(context, id)) return within(*body, 0, 0);
-  if (const sim::Part* part = object_of<sim::Part>(context, id)) {
+  if (const sim::Part* part = object_of<sim::Part>(context, id))
     return within(part->body(), 1, index_in(part->body().parts(), part));
-  }
-  if (const sim::Joint* joint = object_of<sim::Joint>(context, id)) {
+  if (const sim::Joint* joint = object_of<sim::Joint>(context, id))
     return within(joint->body(), 2, index_in(joint->body().joints(), joint));
-  }
   if (const sim::Motor* motor = object_of<sim::Motor>(context, id)) {
     const sim::Body& body = motor->joint().body();
     return within(body, 3, index_in(body.motors(), motor));
@@ -257,37 +256,45 @@ double order(void* c, std::int32_t slot, std::int32_t generation) {
     return within(behavior->body(), 4,
                   static_cast<std::size_t>(std::find(all.begin(), all.end(), behavior) - all.begin()));
   }
-  if (const sim::Sensor* sensor = sensor_of(context, id)) {
+  if (const sim::Sensor* sensor = sensor_of(context, id))
     return within(sensor->body(), 5, index_in<sim::Sensor>(sensor->body().sensors().list(), sensor));
-  }
-  if (const sim::Tendon* tendon = object_of<sim::Tendon>(context, id)) {
+  if (const sim::Tendon* tendon = object_of<sim::Tendon>(context, id))
     return within(tendon->body(), 6, index_in(world.tendons().list(), tendon));
-  }
+  return std::nullopt;
+}
+
+std::optional<double> order_in_world(const ScriptContext& context, NodeId id) {
+  sim::World& world = *context.world;
+  const auto within = [](double kind, std::size_t at, double joint = 0) {
+    return kWorldOrder * (1 + kind / 16) + kKindOrder * static_cast<double>(at) + joint;
+  };
+  if (const sim::Shape* shape = object_of<sim::Shape>(context, id))
+    return within(0, index_in(world.shapes().list(), shape));
+  if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) return within(1, index_in(world.gears().list(), gear));
   if (const sim::BehaviorGroup* group = group_of(context, id)) {
     const std::vector<sim::BehaviorGroup*> all = world.behaviors().groups();
-    return kShapes * 1.25 + static_cast<double>(std::find(all.begin(), all.end(), group) - all.begin());
+    return within(2, static_cast<std::size_t>(std::find(all.begin(), all.end(), group) - all.begin()));
   }
-  if (const sim::Fixture* fixture = object_of<sim::Fixture>(context, id)) {
-    return kShapes * 1.375 + static_cast<double>(index_in(world.visuals().fixtures().list(), fixture));
-  }
-  if (const sim::Gear* gear = object_of<sim::Gear>(context, id)) {
-    return kShapes * 1.125 + static_cast<double>(index_in(world.gears().list(), gear));
-  }
-  if (const sim::MocapSource* source = object_of<sim::MocapSource>(context, id)) {
-    return kShapes * 1.4375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), source));
-  }
+  if (const sim::Fixture* fixture = object_of<sim::Fixture>(context, id))
+    return within(3, index_in(world.visuals().fixtures().list(), fixture));
+  if (const sim::MocapSource* source = object_of<sim::MocapSource>(context, id))
+    return within(4, index_in(world.sensing().mocap().list(), source));
   if (const sim::MocapJoint* joint = object_of<sim::MocapJoint>(context, id)) {
     const sim::MocapSource& source = joint->source();
-    return kShapes * 1.4375 + kKind * static_cast<double>(index_in(world.sensing().mocap().list(), &source)) + 1 +
-           static_cast<double>(index_in(source.joints(), joint));
+    return within(4, index_in(world.sensing().mocap().list(), &source),
+                  1 + static_cast<double>(index_in(source.joints(), joint)));
   }
-  if (const sim::Route* route = object_of<sim::Route>(context, id)) {
-    return kShapes * 1.46875 + static_cast<double>(index_in(world.behaviors().routes().list(), route));
-  }
-  if (const sim::Shape* shape = object_of<sim::Shape>(context, id)) {
-    return kShapes + static_cast<double>(index_in(world.shapes().list(), shape));
-  }
-  return context.alive(id) ? 0 : kShapes * 1.5 + static_cast<double>(slot);
+  if (const sim::Route* route = object_of<sim::Route>(context, id))
+    return within(5, index_in(world.behaviors().routes().list(), route));
+  return std::nullopt;
+}
+
+double order(void* c, std::int32_t slot, std::int32_t generation) {
+  const ScriptContext& context = context_of(c);
+  const NodeId id = id_of(slot, generation);
+  if (const std::optional<double> order = order_in_bodies(context, id)) return *order;
+  if (const std::optional<double> order = order_in_world(context, id)) return *order;
+  return context.alive(id) ? 0 : kWorldOrder * 1.5 + static_cast<double>(slot);
 }
 
 std::int32_t joint_type(void* c, std::int32_t slot, std::int32_t generation) {
