@@ -15,10 +15,10 @@ for i = 1, 6 do
   body:add_behavior("torque", "torque", { torque = vec3(0, 0.01, 0), parts = "part1" })
   body:add_behavior("random_force", "random_force", { rand_interval = 100, max_amp = 1 })
   body:add_behavior("random_torque", "random_torque", { rand_interval = 70, scale = 0.01 })
+  body:add_behavior("rotation_target_oscil", "rotation_target_oscil", { joints = "joint2", oscil_interval = 90 })
   body:add_behavior("rotation_target", "rotation_target", { joints = "joint2", target = vec3(0.2, 0.3, -0.4) })
   body:add_behavior("random_rotation_target", "random_rotation_target",
     { motors = "joint[34]", min_target = vec3(-0.3, -0.3, -0.3), max_target = vec3(0.3, 0.3, 0.3) })
-  body:add_behavior("rotation_target_oscil", "rotation_target_oscil", { joints = "joint2", oscil_interval = 90 })
   body:add_behavior("speed", "speed", { amount = 0.5 })
   body:add_behavior("target_attraction", "target_attraction", { target_pos = vec3(1, 3, 0), max_amp = 1 })
   body:add_behavior("volume", "volume", { parts = { "part1", "part3", "part2", "part4" } })
