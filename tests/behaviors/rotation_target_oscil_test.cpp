@@ -35,7 +35,7 @@ std::vector<double> alternating(int count, int interval) {
   return expected;
 }
 
-void expect_near(const std::vector<double>& actual, const std::vector<double>& expected) {
+void expect_targets(const std::vector<double>& actual, const std::vector<double>& expected) {
   ASSERT_EQ(actual.size(), expected.size());
   for (std::size_t i = 0; i < actual.size(); i++) EXPECT_NEAR(actual[i], expected[i], 1e-6) << "tick " << i;
 }
@@ -44,7 +44,7 @@ void expect_near(const std::vector<double>& actual, const std::vector<double>& e
 TEST(RotationTargetOscil, ChangesTheTargetAtTheInterval) {
   Swing s;
   s.set(s.behavior->id(), "oscil_interval", {100});
-  expect_near(s.play(25), alternating(25, 6));
+  expect_targets(s.play(25), alternating(25, 6));
 }
 
 TEST(RotationTargetOscil, LeadsTheJointByItsSpeed) {

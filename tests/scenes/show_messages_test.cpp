@@ -81,7 +81,7 @@ const std::vector<Single> kSingles = {
     {"/visuals/shape/diffusecolor", {0.25, 0.5, 0.75}},
 };
 
-std::vector<std::string> words(const char* text) {
+std::vector<std::string> word_list(const char* text) {
   std::vector<std::string> list;
   for (const std::string_view word : split(text, ' ')) list.emplace_back(word);
   return list;
@@ -112,8 +112,8 @@ struct ShowMessages : testing::Test {
 TEST_F(ShowMessages, ParametersOfBehaviors) {
   double value = 0;
   for (const Family& family : kParameters) {
-    for (const std::string& behavior : words(family.names)) {
-      for (const std::string& parameter : words(family.properties)) {
+    for (const std::string& behavior : word_list(family.names)) {
+      for (const std::string& parameter : word_list(family.properties)) {
         for (const bool with_body : {false, true}) {
           std::vector<std::string> names{behavior, parameter};
           if (with_body) names.insert(names.begin(), "onshape");
@@ -129,7 +129,7 @@ TEST_F(ShowMessages, ParametersOfBehaviors) {
 
 TEST_F(ShowMessages, PropertiesOfObjects) {
   for (const Family& family : kObjects) {
-    for (const std::string& property : words(family.properties)) {
+    for (const std::string& property : word_list(family.properties)) {
       const std::string address = fmt::format("/physics/{}/{}", family.names, property);
       const bool is_flag = property.ends_with("active");
       send(address, args_of({}, family.numbers, is_flag ? 1 : 0.5));

@@ -16,7 +16,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kTick = 1.0 / 60;
+constexpr double kRouteTick = 1.0 / 60;
 
 // Free balls a and b without gravity. The mass of b is a target, and the friction of a is a source, because nothing but
 // a test changes them.
@@ -108,7 +108,7 @@ TEST(Routes, SmoothingFollowsExponentially) {
   r.input(1);
   for (int n = 1; n <= 30; n++) {
     r.ticks(1);
-    EXPECT_NEAR(r.damping(), 1 - std::exp(-n * kTick / 0.2), 1e-12) << n;
+    EXPECT_NEAR(r.damping(), 1 - std::exp(-n * kRouteTick / 0.2), 1e-12) << n;
   }
 }
 
