@@ -16,7 +16,7 @@
 namespace limber::engine {
 
 struct EngineOptions {
-  std::string scene;                   ///< Scene file; empty: an empty world.
+  std::string scene;  ///< Scene file; empty: an empty world.
   /// Text of the scene; `scene` is then its name, a path in the folder where it finds files.
   std::optional<std::string> scene_text;
   /// A program drives the engine (src/lib) and sets values directly, between two passes. These are not recorded, so

@@ -20,9 +20,9 @@ bool is_arithmetic_exact();
 void reset_arithmetic();
 /// True if LuaJIT and the other libraries call these functions as sin(), powf() and so on (libm.cpp).
 bool is_libm_replaced();
-/// Makes LuaJIT and Bullet call these functions, for a shared library: unlike a program, it can't replace the C library's
-/// functions for the process. Changes the addresses that the dynamic linker has written into these two libraries, once.
-/// Returns the number of addresses, 0 if it failed. [any]
+/// Makes LuaJIT and Bullet call these functions, for a shared library: unlike a program, it can't replace the C
+/// library's functions for the process. Changes the addresses that the dynamic linker has written into these two
+/// libraries, once. Returns the number of addresses, 0 if it failed. [any]
 std::size_t bind_libm();
 
 // Trigonometric functions, in radians. The argument reduction is exact for all doubles.
