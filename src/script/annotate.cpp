@@ -39,8 +39,6 @@ std::string type_text(const Property& property) {
       return property.writable() ? "flags3|boolean[]|boolean" : "flags3";
     case PropertyType::quat:
       return "quat";
-    case PropertyType::text:
-      return "string";
     default:
       return "number";
   }

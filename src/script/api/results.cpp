@@ -39,7 +39,10 @@ std::int32_t result_declare(void* c, const char* name, std::int32_t length, doub
 void result_value(void* c, std::int32_t index, double value) {
   SceneResult& result = context_of(c).output.results[static_cast<std::size_t>(index)];
   result.value = value;
-  result.error = std::isfinite(value) ? "" : fmt::format("result '{}' is {}", result.name, value);
+  // the sign of NaN differs between machines
+  result.error = std::isfinite(value)
+                     ? ""
+                     : fmt::format("result '{}' is {}", result.name, std::isnan(value) ? "nan" : number_text(value));
 }
 
 void result_fault(void* c, std::int32_t index) {
