@@ -753,6 +753,101 @@ function tendon_:remove() end
 ---@field [integer] tendon
 ---@overload fun(self: body, wanted?: string|tendon|(string|tendon)[]): fun(): tendon, integer
 
+-- Lighting fixtures.
+
+---Adds a lighting fixture. Without an `address` it gets the first channels of its universe that are free. Its values
+---are sent to the lights only while the output is armed.
+---@param name string # A name of your choice, unique among the fixtures.
+---@param opts fixture_opts # `profile`, and properties such as `position` and `dimmer`.
+---@return fixture
+function sim:add_fixture(name, opts) end
+
+---Returns a fixture by name or number (-1: the last).
+---@param key string|integer|fixture # Its name, its number from 1, or -1 for the last.
+---@return fixture
+function sim:fixture(key) end
+
+---A lighting fixture. Created by sim:add_fixture.
+---@class fixture
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field targets part[] # read-only. The parts that it can aim at and that exist now.
+---@field universe integer # 1 .. 32767, default 1. DMX universe.
+---@field address integer # 1 .. 512, default 1. Its first channel.
+---@field position vec3like # m, -10000 .. 10000, default 0 0 3. Where its beam begins, world.
+---@field rotation vec3like # deg, -36000 .. 36000, default 0 0 0. Mounting: the rotation Rx·Ry·Rz of its base. At 0 0 0 it stands upright and shines up; with 180 0 0 it hangs and shines down.
+---@field aim "angles"|"point"|"part"|"axis" # default angles. Where it shines: at the angles pan_target and tilt_target, at a point in the world, at a point of a part, or along an axis of a part.
+---@field pan_target number # deg, -1440 .. 1440, default 0. Pan for the aim angles.
+---@field tilt_target number # deg, -1440 .. 1440, default 0. Tilt for the aim angles.
+---@field point vec3like # m, -10000 .. 10000, default 0 0 0. Point for the aim point, world, or for the aim part, in the part's link frame.
+---@field target integer # 1 .. 64, default 1. Number of the part, among its targets, for the aims part and axis.
+---@field axis vec3like # -1 .. 1, default 0 0 1. Direction for the aim axis, in the part's link frame.
+---@field flip boolean # default true. It may turn its head over (pan + 180°, −tilt) where this way is shorter. False: tilt stays positive.
+---@field pan_home number # deg, -720 .. 720, default 0. Calibration: angle of the real head where pan is 0.
+---@field tilt_home number # deg, -720 .. 720, default 0. Calibration: angle of the real head where tilt is 0.
+---@field pan_invert boolean # default false. The real head pans the other way.
+---@field tilt_invert boolean # default false. The real head tilts the other way.
+---@field pan_speed number # deg/s, 0.1 .. 10000, default 240. Largest speed of pan; default: that of the profile.
+---@field tilt_speed number # deg/s, 0.1 .. 10000, default 240. Largest speed of tilt; default: that of the profile.
+---@field pan_acceleration number # deg/s², 0.1 .. 100000, default 800. Largest acceleration of pan; default: that of the profile.
+---@field tilt_acceleration number # deg/s², 0.1 .. 100000, default 800. Largest acceleration of tilt; default: that of the profile.
+---@field dimmer number # 0 .. 1, default 0. Brightness; 0: dark.
+---@field color vec3like # hsb, 0 .. 1, default 0 0 1. Color: hue, saturation, brightness.
+---@field rgb vec3like # 0 .. 1. The same color as red, green, blue.
+---@field white number # 0 .. 1, default 0. White light in addition, for fixtures that have it.
+---@field zoom number # deg, 0.1 .. 170, default 20. Full angle of the beam, for fixtures that can change it.
+---@field strobe number # Hz, 0 .. 100, default 0. Flashes per second; 0: none.
+---@field pan number # read-only, deg. Angle of its head about the z axis of its base.
+---@field tilt number # read-only, deg. Angle between its beam and this axis.
+---@field pan_velocity number # read-only, deg/s. Speed of pan.
+---@field tilt_velocity number # read-only, deg/s. Speed of tilt.
+---@field pan_dmx integer # read-only. Value of pan, 16 bit, also where the fixture uses 8.
+---@field tilt_dmx integer # read-only. Value of tilt, 16 bit, also where the fixture uses 8.
+---@field origin vec3 # read-only, m. Where its beam begins, world.
+---@field direction vec3 # read-only. Direction of its beam, world; length 1.
+---@field light vec3 # read-only. Its light: red, green, blue, with dimmer, white, grand master and blackout.
+---@field beam_angle number # read-only, deg. Full angle of the beam as the fixture can set it.
+---@field dmx string # read-only. The values of its channels, in order.
+---@field profile string # read-only. Name of its profile.
+local fixture_ = {}
+
+---Removes the fixture.
+function fixture_:remove() end
+
+---@class fixture_opts
+---@field profile string # The name of a profile of the program (dimmer, moving_beam, moving_spot, moving_wash, rgb_par, rgbw_par), or a file whose name ends with `.fixture`.
+---@field targets? part|part[] # Up to 64 parts that it can aim at. With targets, the default of `aim` is "part".
+---@field universe? integer # 1 .. 32767, default 1. DMX universe.
+---@field address? integer # 1 .. 512, default 1. Its first channel.
+---@field position? vec3like # m, -10000 .. 10000, default 0 0 3. Where its beam begins, world.
+---@field rotation? vec3like # deg, -36000 .. 36000, default 0 0 0. Mounting: the rotation Rx·Ry·Rz of its base. At 0 0 0 it stands upright and shines up; with 180 0 0 it hangs and shines down.
+---@field aim? "angles"|"point"|"part"|"axis" # default angles. Where it shines: at the angles pan_target and tilt_target, at a point in the world, at a point of a part, or along an axis of a part.
+---@field pan_target? number # deg, -1440 .. 1440, default 0. Pan for the aim angles.
+---@field tilt_target? number # deg, -1440 .. 1440, default 0. Tilt for the aim angles.
+---@field point? vec3like # m, -10000 .. 10000, default 0 0 0. Point for the aim point, world, or for the aim part, in the part's link frame.
+---@field target? integer # 1 .. 64, default 1. Number of the part, among its targets, for the aims part and axis.
+---@field axis? vec3like # -1 .. 1, default 0 0 1. Direction for the aim axis, in the part's link frame.
+---@field flip? boolean # default true. It may turn its head over (pan + 180°, −tilt) where this way is shorter. False: tilt stays positive.
+---@field pan_home? number # deg, -720 .. 720, default 0. Calibration: angle of the real head where pan is 0.
+---@field tilt_home? number # deg, -720 .. 720, default 0. Calibration: angle of the real head where tilt is 0.
+---@field pan_invert? boolean # default false. The real head pans the other way.
+---@field tilt_invert? boolean # default false. The real head tilts the other way.
+---@field pan_speed? number # deg/s, 0.1 .. 10000, default 240. Largest speed of pan; default: that of the profile.
+---@field tilt_speed? number # deg/s, 0.1 .. 10000, default 240. Largest speed of tilt; default: that of the profile.
+---@field pan_acceleration? number # deg/s², 0.1 .. 100000, default 800. Largest acceleration of pan; default: that of the profile.
+---@field tilt_acceleration? number # deg/s², 0.1 .. 100000, default 800. Largest acceleration of tilt; default: that of the profile.
+---@field dimmer? number # 0 .. 1, default 0. Brightness; 0: dark.
+---@field color? vec3like # hsb, 0 .. 1, default 0 0 1. Color: hue, saturation, brightness.
+---@field rgb? vec3like # 0 .. 1. The same color as red, green, blue.
+---@field white? number # 0 .. 1, default 0. White light in addition, for fixtures that have it.
+---@field zoom? number # deg, 0.1 .. 170, default 20. Full angle of the beam, for fixtures that can change it.
+---@field strobe? number # Hz, 0 .. 100, default 0. Flashes per second; 0: none.
+
+---The lighting fixtures.
+---@class fixture_list
+---@field [integer] fixture
+---@overload fun(self: sim, wanted?: string|fixture|(string|fixture)[]): fun(): fixture, integer
+
 -- Motion capture.
 
 ---Adds a dancer: a source of motion capture with its joints. At the top level of the scene only.
@@ -870,6 +965,68 @@ local mocap_joint_ = {}
 ---@field [integer] mocap_joint
 ---@overload fun(self: mocap, wanted?: string|mocap_joint|(string|mocap_joint)[]): fun(): mocap_joint, integer
 
+-- Routes.
+
+---Adds a route: in each tick, before the behaviors, it sets a property to the value of another one. A range, a curve,
+---smoothing and a lag shape the value. An end is an address, a pattern of addresses, or an object and the name of its
+---property; `.x`, `.y`, `.z`, `.w` and, for a source, `.length` select a number of a vector. An end that does not exist
+---yet is reported, and the route waits for it.
+---@param name string # A name of your choice, unique among the routes.
+---@param opts route_opts # `from`, `to`, and properties such as `smoothing`.
+---@return route
+function sim:add_route(name, opts) end
+
+---Returns a route by name or number (-1: the last).
+---@param key string|integer|route # Its name, its number from 1, or -1 for the last.
+---@return route
+function sim:route(key) end
+
+---A connection that sets a property to the value of another one in each tick.
+---@class route
+---@field name string # read-only. Its name.
+---@field alive boolean # read-only. True while it exists.
+---@field enabled boolean # default true. False: it sets nothing, and its target keeps the last value.
+---@field input_low number # -1000000000 .. 1000000000, default 0. Input that becomes output_low.
+---@field input_high number # -1000000000 .. 1000000000, default 1. Input that becomes output_high.
+---@field output_low number # -1000000000 .. 1000000000, default 0. Output for an input of input_low.
+---@field output_high number # -1000000000 .. 1000000000, default 1. Output for an input of input_high.
+---@field clamp boolean # default false. True: the output stays between output_low and output_high.
+---@field curve "linear"|"smooth"|"in"|"out" # default linear. Shape of the way between both ends: straight, slow at both ends, slow at the first, slow at the second.
+---@field smoothing number # s, 0 .. 60, default 0. Time constant with which the output follows; 0: at once.
+---@field lag number # s, 0 .. 10, default 0. Time by which the output is late; at most 4096 ticks.
+---@field combine "sum"|"max"|"last" # default sum. How the output joins those of earlier routes to the same target: added, the larger one, or instead of them.
+---@field input number # read-only. Value of its source in the last tick; of several, the first.
+---@field output number # read-only. Value for its target in the last tick, before it joins those of other routes.
+---@field links integer # read-only. Number of connections; 0: it waits.
+---@field from string # read-only. Address or pattern of its source.
+---@field to string # read-only. Address or pattern of its target.
+---@field problem string # read-only. Why it has no effect; empty: it works.
+local route_ = {}
+
+---Removes the route; its target keeps the last value.
+function route_:remove() end
+
+---@class route_opts
+---@field from string|table # An address or pattern, or `{ object, "property" }`.
+---@field to string|table # The same for the target.
+---@field input? number[] # `{ low, high }`: sets `input_low` and `input_high`.
+---@field output? number[] # `{ low, high }`: sets `output_low` and `output_high`. With `input` or `output`, `clamp` is true unless it is set.
+---@field enabled? boolean # default true. False: it sets nothing, and its target keeps the last value.
+---@field input_low? number # -1000000000 .. 1000000000, default 0. Input that becomes output_low.
+---@field input_high? number # -1000000000 .. 1000000000, default 1. Input that becomes output_high.
+---@field output_low? number # -1000000000 .. 1000000000, default 0. Output for an input of input_low.
+---@field output_high? number # -1000000000 .. 1000000000, default 1. Output for an input of input_high.
+---@field clamp? boolean # default false. True: the output stays between output_low and output_high.
+---@field curve? "linear"|"smooth"|"in"|"out" # default linear. Shape of the way between both ends: straight, slow at both ends, slow at the first, slow at the second.
+---@field smoothing? number # s, 0 .. 60, default 0. Time constant with which the output follows; 0: at once.
+---@field lag? number # s, 0 .. 10, default 0. Time by which the output is late; at most 4096 ticks.
+---@field combine? "sum"|"max"|"last" # default sum. How the output joins those of earlier routes to the same target: added, the larger one, or instead of them.
+
+---The routes of the world.
+---@class route_list
+---@field [integer] route
+---@overload fun(self: sim, wanted?: string|route|(string|route)[]): fun(): route, integer
+
 -- The world, and the callbacks of a scene.
 
 ---The world. The top level of a scene describes the objects; callbacks act on them.
@@ -877,8 +1034,10 @@ local mocap_joint_ = {}
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
+---@field fixtures fixture_list # read-only. All lighting fixtures, in the order of their creation; call it to iterate over those that match a pattern.
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
 ---@field mocaps mocap_list # read-only. All sources of motion capture, in the order of their creation.
+---@field routes route_list # read-only. All routes, in stream order; call it to iterate over those that match a pattern.
 ---@field gravity vec3like # m/s², -10000 .. 10000, default 0 0 -9.81. Gravitational acceleration.
 ---@field timestep number # s, 1e-05 .. 1, default 0.0166667. Simulated time per tick.
 ---@field substeps integer # 1 .. 1000, default 4. Number of equal substeps in a tick; more are more accurate and slower.
@@ -1238,6 +1397,31 @@ params = {}
 ---@type table<string, any>
 state = {}
 
+---@class result_opts
+---@field min number # Smallest value of the range.
+---@field max number # Largest value of the range.
+---@field cells? integer # 1 .. 1000, default 10. Number of equal cells of the range, for `limber evolve --descriptor`.
+
+---Declares a number that the run returns: f is called once, at the end of the run. Call it at the top level of the scene.
+---@param name string # Its name: letters, digits, _; unique among results.
+---@param f fun(): number|boolean # Returns the value.
+---@param opts? result_opts # A range, if the result can be a descriptor.
+function result(name, f, opts) end
+
+---A column of sim:record.
+---@class record_column
+---@field [1] string # Its name: letters, digits, _; unique among columns, and neither tick nor time.
+---@field [2] fun(): number|boolean # Returns the value.
+
+---@class record_opts
+---@field [integer] record_column
+---@field rate? number # Hz, 0.001 .. 10000, default 60. Rows per simulated second, at most one per tick.
+
+---Declares columns that the run records with `--out`: in each row the tick, the time and the value of each function,
+---which is called before the physics step. Call it once, at the top level of the scene.
+---@param columns record_opts # The columns, in their order, and the rate.
+function sim:record(columns) end
+
 ---OSC messages: handlers, and messages that the scene sends.
 ---@class osc
 ---@field address? string # read-only. During a handler: the message's address.
@@ -1270,6 +1454,15 @@ function osc:listen(port) end
 ---@field bodies? string|body # A name or a pattern, default all.
 ---@field bundle? integer|false|"off" # 1472, 8192 or 65504 bytes, or "off".
 ---@field errors? boolean # default false. Send error messages to this target too.
+---@field messages? stream_message[] # Messages of your own; then `streams` is empty unless it is set.
+
+---A template of messages: the values of each object that a pattern matches, in each frame.
+---@class stream_message
+---@field address string # With `{name}`, `{body}` and `{index}`, which become those of the object.
+---@field objects string # Address or pattern of objects, such as "/physics/body/*/part/*".
+---@field values string|string[] # Properties, such as "position", "rotation.w" or "-position.y", or texts with `{name}`, `{body}` or `{index}`.
+---@field scale? number # default 1. Factor of all numbers: 100 for cm.
+---@field per? "object"|"body" # default "object". "body": one message with the values of all objects of a body.
 
 ---Streams the joints' poses to a host, instead of the default.
 ---@param target string # host:port
