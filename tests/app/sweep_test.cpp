@@ -236,7 +236,7 @@ TEST(Evolve, ArchiveIsTheSameAfterAnyInterruption) {
   folder.file("push.lua", kPush);
   const auto evolve = [&](const std::string& out, const char* generations, const char* jobs, bool resume) {
     std::vector<std::string> words{"evolve",     "push.lua", "--maximize", "noise", "--descriptor",  "distance",
-                                   "--duration", "0.2",      "--seeds",    "1:2",   "--population",  "20",
+                                   "--duration", "0.5",      "--seeds",    "1:2",   "--population",  "20",
                                    "--out",      out,        "--jobs",     jobs,    "--generations", generations};
     if (resume) words.emplace_back("--resume");
     const RunResult result = run(words, folder.path());

@@ -106,6 +106,8 @@ constexpr std::array kLibraries{
     Library{"GLFW/", "app"},
     Library{"CLI/", "app"},
     Library{"histedit.h", "app"},
+    Library{"stddef.h", "lib"},  // limber.h is for C
+    Library{"stdint.h", "lib"},
     Library{"sanitizer/", "base"},
     Library{"valgrind/", "base"},
     Library{"fmt/", ""},

@@ -134,7 +134,7 @@ TEST(Limber, MessagesAreExecutedAtOnce) {
 TEST(Limber, ContactsCarryTheWeight) {
   const TestSim box(R"(
     sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"))
-    sim:add_body("box"):add_part("box", sim:add_box_shape("box", vec3(0.4)), { position = vec3(0, 0, 0.2), mass = 2,
+    sim:add_body("box"):add_part("box", sim:add_box_shape("box", vec3(0.4, 0.4, 0.4)), { position = vec3(0, 0, 0.2), mass = 2,
       report_contacts = true })
   )");
   box.step(120);

@@ -65,7 +65,7 @@ TEST(LimberPackage, PkgConfigCompilesAndOnlyTheInterfaceIsExported) {
   const std::string package = std::filesystem::path(find_file(prefix, "limber.pc")).parent_path().string();
   const std::string program = folder.path() + "/sway";
   succeed({"sh", "-c",
-           fmt::format("PKG_CONFIG_PATH={} && export PKG_CONFIG_PATH && cc {}/examples/library/sway.c -o {} "
+           fmt::format("PKG_CONFIG_PATH={} && export PKG_CONFIG_PATH && cc {}/docs/examples/library/sway.c -o {} "
                        "$(pkg-config --cflags --libs limber)",
                        package, LIMBER_SOURCE_DIR, program)});
   const std::string library = find_file(prefix, "liblimber.so");

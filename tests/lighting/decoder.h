@@ -76,4 +76,10 @@ inline std::optional<Sacn> decode_sacn(const std::string& packet) {
   return out;
 }
 
+/// Values of a whole universe that begin with these; sACN sends all 512.
+inline std::vector<int> padded(std::vector<int> values) {
+  values.resize(512);
+  return values;
+}
+
 }  // namespace limber::lighting::test

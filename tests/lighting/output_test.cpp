@@ -100,7 +100,7 @@ TEST(LightingOutput, SacnIsArmedFromTheStartWithTheOption) {
   const auto decoded = decode_sacn(*packet);
   ASSERT_TRUE(decoded.has_value());
   EXPECT_EQ(decoded->source, "Limber");
-  EXPECT_EQ(decoded->values, (std::vector<int>{0, 0, 255, 0, 51}));
+  EXPECT_EQ(decoded->values, padded({0, 0, 255, 0, 51}));
 }
 
 }  // namespace

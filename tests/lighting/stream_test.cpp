@@ -96,7 +96,7 @@ TEST(LightStream, SacnMulticastsEachUniverseAndSynchronizes) {
   EXPECT_EQ(data->universe, 258);
   EXPECT_EQ(data->priority, 130);
   EXPECT_EQ(data->sync_universe, 7);
-  EXPECT_EQ(data->values, (std::vector<int>{1, 2, 3, 4}));
+  EXPECT_EQ(data->values, padded({1, 2, 3, 4}));
   EXPECT_TRUE(sync->sync);
   EXPECT_EQ(sync->sync_universe, 7);
 }
@@ -109,7 +109,7 @@ TEST(LightStream, EndsDarkOrHoldsAsTheOptionsSay) {
   for (std::size_t i = 1; i < 5; i++) {
     const auto packet = decode_sacn(dark.packets[i].bytes);
     ASSERT_TRUE(packet.has_value());
-    EXPECT_EQ(packet->values, (std::vector<int>{0, 2, 3, 4})) << "the head stays where it is";
+    EXPECT_EQ(packet->values, padded({0, 2, 3, 4})) << "the head stays where it is";
     EXPECT_EQ(packet->options, i == 1 ? 0 : 0x40);
     EXPECT_EQ(packet->sequence, static_cast<int>(i));
   }

@@ -51,6 +51,10 @@ for _, kind in ipairs { "force", "random_force", "random_rotation_target", "rand
 end
 sim:add_gear(joints[1], joints[2], 2)
 sim:add_fixture("the_first_spot_on_the_left_side", { profile = "moving_spot", targets = tip })
+sim:add_mocap("dancer", { source = "osc", joints = { "the_upper_segment_of_the_left_arm" } })
+for _, kind in ipairs { "mocap_attraction", "mocap_body", "mocap_target" } do
+  sim.bodies[1]:add_behavior(kind, "one_" .. kind)
+end
 sim.bodies[1]:add_tendon("cable", { points = { { "base", 0.2, 0, 0 }, { "tip" } } })
 sim:add_route("from_the_length_of_the_upper_segment_to_the_tip", { from = "/scene/the_length_of_the_upper_segment_of_the_left_leg",
   to = "/physics/body/the_upper_segment_of_the_left_leg/part/tip/transparency" })

@@ -149,7 +149,9 @@ TEST(PropertyWidget, RightClickCopies) {
 // One widget of each kind: its menu has each entry once, and closes again.
 TEST(PropertyWidget, RightClickOpensOneMenu) {
   PanelFixture fixture;
-  const std::vector<std::string> all{"menu:copy_address", "menu:copy_lua", "menu:plot"};
+  const std::vector<std::string> all{"menu:copy_address", "menu:copy_lua", "menu:plot", "menu:route_from",
+                                     "menu:route_to"};
+  const std::vector<std::string> readout{"menu:copy_address", "menu:copy_lua", "menu:plot", "menu:route_from"};
   const std::vector<std::string> unplotted{"menu:copy_address", "menu:copy_lua"};
   struct Item {
     std::string address, widget;
@@ -163,7 +165,7 @@ TEST(PropertyWidget, RightClickOpensOneMenu) {
       {"/physics/sim/gravity", "/physics/sim/gravity/1", all},
       {"/visuals/background", "swatch:/visuals/background", all},
       {"/visuals/background", "/visuals/background/2", all},
-      {"/physics/sim/time", "/physics/sim/time", all},
+      {"/physics/sim/time", "/physics/sim/time", readout},
       {"/physics/body/arm/part/tip/rotation", "/physics/body/arm/part/tip/rotation/3", all},
       {"/physics/body/arm/remove", "/physics/body/arm/remove", unplotted},
       {"/take/name", "/take/name", {"menu:copy_address"}},
@@ -180,7 +182,8 @@ TEST(PropertyWidget, RightClickOpensOneMenu) {
 
 TEST(PropertyWidget, MenuIsTheSameForFavoritesAndTheTransport) {
   PanelFixture fixture;
-  const std::vector<std::string> all{"menu:copy_address", "menu:copy_lua", "menu:plot"};
+  const std::vector<std::string> all{"menu:copy_address", "menu:copy_lua", "menu:plot", "menu:route_from",
+                                     "menu:route_to"};
   fixture.click("star:/scene/rate");
   fixture.click("parameters.favorites");
   fixture.click("/scene/rate", 1);

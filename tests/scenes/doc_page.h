@@ -64,7 +64,8 @@ inline std::vector<DocBlock> blocks_of_page(const std::string& page) {
       target = &list.back().output.emplace_back();
       continue;
     }
-    EXPECT_TRUE(language == "lua" || language == "xml" || language == "console") << where << ": " << language;
+    EXPECT_TRUE(language == "lua" || language == "xml" || language == "obj" || language == "console")
+        << where << ": " << language;
     DocBlock& block = list.emplace_back();
     block.language = language;
     info >> block.file >> block.expected;

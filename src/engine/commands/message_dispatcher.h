@@ -15,19 +15,13 @@
 #include "engine/commands/outcome.h"
 #include "engine/commands/query_handler.h"
 #include "engine/commands/selector.h"
+#include "engine/commands/special_addresses.h"
 #include "engine/output/health.h"
 #include "engine/presets/presets.h"
 #include "properties/catalog.h"
 #include "sim/world/world.h"
 
 namespace limber::engine {
-
-/// A special address: one that is not derived from a property.
-struct SpecialAddress {
-  std::string_view address;
-  std::string_view args;
-  std::string_view doc;
-};
 
 class MessageDispatcher {
  public:

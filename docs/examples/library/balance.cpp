@@ -8,7 +8,7 @@ int main() {
   limber_options options = LIMBER_OPTIONS;
   options.text = R"(
     local arm = sim:add_body("arm")
-    arm:add_part("base", sim:add_box_shape("base", vec3(0.1)), { position = vec3(0, 0, 1), motion = "static" })
+    arm:add_part("base", sim:add_box_shape("base", vec3(0.1, 0.1, 0.1)), { position = vec3(0, 0, 1), motion = "static" })
     arm:add_part("rod", sim:add_box_shape("rod", vec3(0.05, 0.05, 0.6)), { position = vec3(0, 0, 0.7), mass = 1 })
     local top = arm:add_joint("top", "base", "rod", { position = vec3(0, 0, 1), axis = vec3(0, 1, 0) })
     arm:add_motor(top).mode = "torque"

@@ -6,7 +6,7 @@ int main(void) {
   limber_options options = LIMBER_OPTIONS;
   options.text =
       "local arm = sim:add_body('arm')\n"
-      "arm:add_part('base', sim:add_box_shape('base', vec3(0.1)), { position = vec3(0, 0, 1), motion = 'static' })\n"
+      "arm:add_part('base', sim:add_box_shape('base', vec3(0.1, 0.1, 0.1)), { position = vec3(0, 0, 1), motion = 'static' })\n"
       "arm:add_part('rod', sim:add_box_shape('rod', vec3(0.05, 0.05, 0.6)), { position = vec3(0.3, 0, 1) })\n"
       "arm:add_joint('top', 'base', 'rod', { position = vec3(0, 0, 1), axis = vec3(0, 1, 0) })\n";
   limber_sim* sim = NULL;
