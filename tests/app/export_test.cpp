@@ -351,7 +351,7 @@ TEST(Export, ExtrasAreVelocitiesTorquesAndContacts) {
   const std::string take = record(folder, R"(
 sim:add_body("ground"):add_part("floor", sim:add_plane_shape("floor"))
 local ball = sim:add_sphere_shape("ball", 0.1)
-sim:add_body("rests"):add_part("ball", ball, { mass = 2, position = vec3(0, 0, 0.1) })
+sim:add_body("rests"):add_part("ball", ball, { mass = 2, position = vec3(0, 0, 0.1), report_contacts = true })
 sim:add_body("falls"):add_part("ball", ball, { position = vec3(9, 0, 99) })
 )",
                                   "60");

@@ -236,7 +236,7 @@ TEST(Evolve, ArchiveIsTheSameAfterAnyInterruption) {
   folder.file("push.lua", kPush);
   const auto evolve = [&](const std::string& out, const char* generations, const char* jobs, bool resume) {
     std::vector<std::string> words{"evolve",     "push.lua", "--maximize", "noise", "--descriptor",  "distance",
-                                   "--duration", "0.5",      "--seeds",    "1:2",   "--population",  "20",
+                                   "--duration", "1",        "--seeds",    "1:2",   "--population",  "20",
                                    "--out",      out,        "--jobs",     jobs,    "--generations", generations};
     if (resume) words.emplace_back("--resume");
     const RunResult result = run(words, folder.path());
@@ -256,7 +256,7 @@ TEST(Evolve, SurvivesTheDeathOfItsProcesses) {
   folder.file("push.lua", kPush);
   const auto words = [](const std::string& out) {
     return limber_command({"evolve", "push.lua", "--maximize", "distance", "--descriptor", "distance", "--duration",
-                           "0.5", "--population", "50", "--generations", "12", "--jobs", "2", "--out", out});
+                           "0.5", "--population", "40", "--generations", "8", "--jobs", "2", "--out", out});
   };
   ASSERT_EQ(Process(words("whole"), folder.path()).finish().code, 0);
   Process process(words("killed"), folder.path());

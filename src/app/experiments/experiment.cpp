@@ -70,7 +70,7 @@ void Experiment::begin() {
 std::string Experiment::play_command(const std::vector<double>& values, std::uint64_t seed) const {
   std::string command = fmt::format("limber {}", shell_word(options_.scene));
   for (std::size_t i = 0; i < axes_.size(); i++)
-    command += fmt::format(" --param {}", shell_word(fmt::format("{}={}", axes_[i].name, axes_[i].text(values[i]))));
+    command += fmt::format(" --param {}", fmt::format("{}={}", axes_[i].name, shell_word(axes_[i].text(values[i]))));
   return command + fmt::format(" --seed {}", seed);
 }
 

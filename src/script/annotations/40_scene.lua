@@ -68,6 +68,7 @@ function result(name, f, opts) end
 ---@error sim:record {} --> sim:record takes a list of columns { "name", function() return … end }
 ---@error sim:record { { "time", print } } --> sim:record: each row has the column 'time' already
 ---@error sim:record { rate = 0, { "height", print } } --> sim:record: rate is 0.001 .. 10000 Hz, not 0
+---@see result()
 ---@example results
 function sim:record(columns) end
 
