@@ -24,12 +24,18 @@ struct SimError : std::runtime_error {
 // Raises the exception of a status. Messages of the library name place, problem and fix.
 void check(limber_status status) {
   switch (status) {
-    case LIMBER_OK: return;
-    case LIMBER_INVALID_ARGUMENT: throw py::value_error(limber_last_error());
-    case LIMBER_NOT_FOUND: throw py::key_error(limber_last_error());
-    case LIMBER_REJECTED: throw py::value_error(limber_last_error());
-    case LIMBER_NO_MEMORY: throw std::bad_alloc();
-    default: throw SimError(limber_last_error());
+    case LIMBER_OK:
+      return;
+    case LIMBER_INVALID_ARGUMENT:
+      throw py::value_error(limber_last_error());
+    case LIMBER_NOT_FOUND:
+      throw py::key_error(limber_last_error());
+    case LIMBER_REJECTED:
+      throw py::value_error(limber_last_error());
+    case LIMBER_NO_MEMORY:
+      throw std::bad_alloc();
+    default:
+      throw SimError(limber_last_error());
   }
 }
 
@@ -78,7 +84,8 @@ class Property {
     // a copy only if the type, the order or the shape differs
     using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
     const Array array = Array::ensure(values);
-    if (!array) throw py::error_already_set();
+    if (!array)  // ensure() drops the error of NumPy
+      throw py::value_error("the values of a property are numbers, not " + std::string(py::str(py::type::of(values))));
     if (array.ndim() == 0) {
       std::fill_n(values_.mutable_data(), values_.size(), *array.data());
       return write_own();
@@ -118,10 +125,14 @@ limber_value value_of(const py::handle& object, std::vector<std::string>& texts)
 
 py::object object_of(const limber_value& value) {
   switch (value.kind) {
-    case LIMBER_NUMBER: return py::float_(value.number);
-    case LIMBER_BOOLEAN: return py::bool_(value.number != 0);
-    case LIMBER_TEXT: return py::str(value.text);
-    default: return py::none();
+    case LIMBER_NUMBER:
+      return py::float_(value.number);
+    case LIMBER_BOOLEAN:
+      return py::bool_(value.number != 0);
+    case LIMBER_TEXT:
+      return py::str(value.text);
+    default:
+      return py::none();
   }
 }
 
