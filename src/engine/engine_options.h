@@ -37,10 +37,12 @@ struct EngineOptions {
   bool current_scripts = false;        ///< A replay reads the scene from the disk, in its current state.
   /// Folder of the lock files that make one program the owner of a scene's presets; empty: no locks.
   std::string lock_folder;
-  std::string recovery_folder;  ///< Folder of the recovery file, written while the show plays; empty: no recovery.
-  std::chrono::milliseconds recovery_interval = RecoverySaver::kInterval;
-  bool recover = false;  ///< `--recover`: restores the values of a run that crashed.
-  int threads = 1;       ///< Threads for each physics step. The result is the same for any number.
+  struct Recovery {
+    std::string folder;  ///< Folder of the recovery file, written while the show plays; empty: no recovery.
+    std::chrono::milliseconds interval = RecoverySaver::kInterval;
+    bool restore = false;  ///< `--recover`: restores the values of a run that crashed.
+  } recovery;
+  int threads = 1;  ///< Threads for each physics step. The result is the same for any number.
   /// `--param`: values of the scene's own parameters, as messages to /scene/NAME; applied before `sets`.
   std::vector<Message> params;
   std::vector<Message> sets;  ///< `--set`: overrides, applied before the first tick and after the preset.

@@ -196,9 +196,9 @@ TEST(Health, CountsFailedWrites) {
 TEST(Health, ReportsThatAnotherProgramOwnsTheScene) {
   const SceneFile file("");
   EngineOptions options = fast_options(file.path());
-  options.recovery_folder = file.path() + ".recovery";
+  options.recovery.folder = file.path() + ".recovery";
   BackgroundWriter writer;
-  RecoverySaver other(writer, options.recovery_folder);
+  RecoverySaver other(writer, options.recovery.folder);
   ASSERT_TRUE(other.open(file.path()).ok());
   ASSERT_TRUE(other.owned());
   Show show(std::move(options));

@@ -30,12 +30,12 @@ struct RecoveryShow {
     log_to_stderr(false);
     folder.write("scripts/scene.lua", kRecoverScene);
     options = fast_options(folder.path("scripts/scene.lua"));
-    options.recovery_folder = folder.path("state");
-    options.recovery_interval = std::chrono::milliseconds(1);
+    options.recovery.folder = folder.path("state");
+    options.recovery.interval = std::chrono::milliseconds(1);
   }
   std::string saved() const {
     std::error_code none;
-    for (const auto& entry : std::filesystem::directory_iterator(options.recovery_folder, none)) {
+    for (const auto& entry : std::filesystem::directory_iterator(options.recovery.folder, none)) {
       const std::string name = entry.path().filename().string();
       if (name.ends_with(".json") && !name.ends_with(".lost.json")) return file_bytes(entry.path().string());
     }
@@ -73,7 +73,7 @@ TEST(Recovery, OffersAndRestoresACrashedSession) {
     show.engine.end_recovery();
   }
   EngineOptions options = fixture.options;
-  options.recover = true;
+  options.recovery.restore = true;
   options.sets = {message("/scene/wind", 3)};
   {
     const std::uint64_t before = log_newest();
@@ -99,7 +99,7 @@ TEST(Recovery, KeepsEditsOfTheSceneAndReportsMissingObjects) {
   text.erase(text.find("sim:body(\"b1\")"));
   fixture.folder.write("scripts/scene.lua", text + "sim.timestep = 0.01\n");
   EngineOptions options = fixture.options;
-  options.recover = true;
+  options.recovery.restore = true;
   const std::uint64_t before = log_newest();
   Show show(options);
   EXPECT_TRUE(RecoveryShow::logged(before, "1 object was not found (/physics/body/b1/behavior/wind)"));
@@ -110,8 +110,8 @@ TEST(Recovery, KeepsEditsOfTheSceneAndReportsMissingObjects) {
 TEST(Recovery, ASecondCrashLosesNothing) {
   RecoveryShow fixture;
   fixture.crash();
-  fixture.options.recover = true;
-  fixture.options.recovery_interval = std::chrono::hours(1);
+  fixture.options.recovery.restore = true;
+  fixture.options.recovery.interval = std::chrono::hours(1);
   for (int i = 0; i < 2; i++) {
     Show show(fixture.options);
     show.ticks(3);
@@ -122,10 +122,10 @@ TEST(Recovery, ASecondCrashLosesNothing) {
 TEST(Recovery, ReportsADamagedFileAndPlays) {
   RecoveryShow fixture;
   fixture.crash();
-  for (const auto& entry : std::filesystem::directory_iterator(fixture.options.recovery_folder)) {
+  for (const auto& entry : std::filesystem::directory_iterator(fixture.options.recovery.folder)) {
     if (entry.path().extension() == ".json") std::filesystem::resize_file(entry.path(), 200);
   }
-  fixture.options.recover = true;
+  fixture.options.recovery.restore = true;
   const std::uint64_t before = log_newest();
   Show show(fixture.options);
   EXPECT_TRUE(RecoveryShow::logged(before, "the values of the run that did not exit cleanly can't be restored"));
@@ -163,7 +163,7 @@ std::shared_ptr<const Preset> preset_of(double value) {
 
 TEST(Recovery, ValuesThatWaitAreSavedWithoutAnotherTick) {
   const RecoveryShow fixture;
-  const std::string scene = fixture.options.scene, folder = fixture.options.recovery_folder;
+  const std::string scene = fixture.options.scene, folder = fixture.options.recovery.folder;
   const Result<std::unique_ptr<RecoveryFile>> first = RecoveryFile::open(folder, scene);
   ASSERT_TRUE(first.ok() && *first != nullptr);
   BackgroundWriter writer;
@@ -196,7 +196,7 @@ TEST(Recovery, EachSceneHasItsOwnFile) {
     show.ticks(1);
     fixture.play_until_saved(show, "-4.5");
   }
-  fixture.options.recover = true;
+  fixture.options.recovery.restore = true;
   {
     const std::uint64_t before = log_newest();
     Show show(fixture.options);
@@ -211,7 +211,7 @@ TEST(Recovery, EachSceneHasItsOwnFile) {
 TEST(Recovery, ReplaysATakeWithRecoveredValues) {
   RecoveryShow fixture;
   fixture.crash();
-  fixture.options.recover = true;
+  fixture.options.recovery.restore = true;
   fixture.options.record = fixture.folder.path("recovered.take");
   std::uint64_t hash = 0;
   {

@@ -132,8 +132,8 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
   const std::string state = state_dir();
   if (!state.empty()) engine.lock_folder = state + "/locks";
   if (engine.in_real_time() && options.take.replay.empty() && !options.display.offline() && !state.empty())
-    engine.recovery_folder = state + "/recovery";
-  engine.recover = options.recover;
+    engine.recovery.folder = state + "/recovery";
+  engine.recovery.restore = options.recover;
   if (options.network.lights && engine.replay.empty()) engine.sets.push_back({"/lighting/armed", {Arg::of(true)}});
   for (const std::string& text : options.run.params) {
     Result<Message> param = parse_value(text, kParamOption);

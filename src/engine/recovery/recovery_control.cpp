@@ -15,17 +15,17 @@ constexpr std::uint32_t kCheapNodeCount = 4096;  // nodes that can be visited in
 
 void RecoveryControl::open() {
   const EngineOptions& options = show_.options;
-  if (options.recovery_folder.empty() || options.scene.empty()) return;
-  saver_ = std::make_unique<RecoverySaver>(show_.writer, options.recovery_folder, options.recovery_interval);
+  if (options.recovery.folder.empty() || options.scene.empty()) return;
+  saver_ = std::make_unique<RecoverySaver>(show_.writer, options.recovery.folder, options.recovery.interval);
   const Result<std::optional<RecoverableValues>> recoverable = saver_->open(options.scene);
   if (!saver_->owned()) {
-    log_warning("{}{}", options.recover ? "--recover: " : "", RecoverySaver::kOwnedElsewhere);
+    log_warning("{}{}", options.recovery.restore ? "--recover: " : "", RecoverySaver::kOwnedElsewhere);
   } else if (!recoverable) {
     log_error("{}", recoverable.error());
   } else if (!*recoverable) {
-    if (options.recover)
+    if (options.recovery.restore)
       log_warning("--recover: there is nothing to recover; the last run of this scene exited cleanly");
-  } else if (options.recover) {
+  } else if (options.recovery.restore) {
     show_.recovered = (*recoverable)->values;
     crash_time_ = (*recoverable)->time_text();
   } else {

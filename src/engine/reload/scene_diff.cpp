@@ -280,10 +280,10 @@ bool SceneDiff::empty() const {
   const bool same_objects =
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
   const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
-  const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, removed_gears,
-                                     removed_tendons, mocap.removed, routes.removed);
-  return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears) &&
-         all_empty(tendons) && fixtures.empty() && all_empty(mocap.sources) && all_empty(routes.list) &&
+  const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, gears.removed,
+                                     tendons.removed, mocap.removed, routes.removed);
+  return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears.list) &&
+         all_empty(tendons.list) && fixtures.empty() && all_empty(mocap.sources) && all_empty(routes.list) &&
          std::ranges::all_of(behaviors, all_empty);
 }
 
@@ -355,11 +355,11 @@ void compare_gears(const SceneSpec& before, const SceneSpec& now, SceneDiff& out
   for (const GearDescription& gear : now.gears) {
     const GearDescription* const old_gear = find_named(before.gears, gear.name);
     const bool same_joints = old_gear != nullptr && joints(*old_gear) == joints(gear);
-    out.gears.push_back({old_gear != nullptr, same_joints,
-                         mask_to_set(old_gear == nullptr ? nullptr : &old_gear->values, gear.values)});
+    out.gears.list.push_back({old_gear != nullptr, same_joints,
+                              mask_to_set(old_gear == nullptr ? nullptr : &old_gear->values, gear.values)});
   }
   for (const GearDescription& old_gear : before.gears) {
-    if (find_named(now.gears, old_gear.name) == nullptr) out.removed_gears.push_back(old_gear.name);
+    if (find_named(now.gears, old_gear.name) == nullptr) out.gears.removed.push_back(old_gear.name);
   }
 }
 
@@ -386,11 +386,11 @@ const TendonDescription* find_tendon(const SceneSpec& spec, const TendonDescript
 void compare_tendons(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
   for (const TendonDescription& tendon : now.tendons) {
     const TendonDescription* const old_tendon = find_tendon(before, tendon);
-    out.tendons.push_back({old_tendon != nullptr, old_tendon != nullptr && old_tendon->points == tendon.points,
-                           mask_to_set(old_tendon == nullptr ? nullptr : &old_tendon->values, tendon.values)});
+    out.tendons.list.push_back({old_tendon != nullptr, old_tendon != nullptr && old_tendon->points == tendon.points,
+                                mask_to_set(old_tendon == nullptr ? nullptr : &old_tendon->values, tendon.values)});
   }
   for (const TendonDescription& old_tendon : before.tendons) {
-    if (find_tendon(now, old_tendon) == nullptr) out.removed_tendons.emplace_back(old_tendon.body, old_tendon.name);
+    if (find_tendon(now, old_tendon) == nullptr) out.tendons.removed.emplace_back(old_tendon.body, old_tendon.name);
   }
 }
 

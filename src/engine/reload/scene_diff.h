@@ -96,6 +96,17 @@ struct MocapDiffs {
   std::vector<std::string> removed;  ///< Names of removed ones.
 };
 
+struct GearDiffs {
+  std::vector<GearDiff> list;        ///< For each new gear.
+  std::vector<std::string> removed;  ///< Removed gears.
+};
+
+struct TendonDiffs {
+  std::vector<TendonDiff> list;  ///< For each new tendon.
+  /// Removed tendons, by the names of their bodies and their own.
+  std::vector<std::pair<std::string, std::string>> removed;
+};
+
 /// Changes of a route.
 struct RouteDiff {
   bool in_old_spec = false;   ///< It is in the old spec.
@@ -126,11 +137,8 @@ struct SceneDiff {
   /// Removed behaviors, by body (index in the new spec) and name.
   std::vector<std::pair<std::size_t, std::string>> removed_behaviors;
   std::vector<std::string> removed_groups;  ///< Removed groups.
-  std::vector<GearDiff> gears;              ///< For each new gear.
-  std::vector<std::string> removed_gears;   ///< Removed gears.
-  std::vector<TendonDiff> tendons;          ///< For each new tendon.
-  /// Removed tendons, by the names of their bodies and their own.
-  std::vector<std::pair<std::string, std::string>> removed_tendons;
+  GearDiffs gears;
+  TendonDiffs tendons;
   FixtureDiffs fixtures;
   MocapDiffs mocap;
   RouteDiffs routes;

@@ -191,7 +191,7 @@ class PatchApplier {
 
   // A gear that was removed, or lost a body, is added again with the values of the scene; others keep their values.
   void apply_gears() {
-    for (const std::string& name : patch_.diff.removed_gears) {
+    for (const std::string& name : patch_.diff.gears.removed) {
       if (sim::Gear* const removed = patch_.world.gears().find(name)) patch_.world.gears().remove(*removed);
     }
     std::vector<sim::Gear*> order;
@@ -212,7 +212,7 @@ class PatchApplier {
         live = *added;
         set_properties(source.id(), live->id(), described_mask(sim::Gear::table()));
       } else {
-        const GearDiff& diff = patch_.diff.gears[i];
+        const GearDiff& diff = patch_.diff.gears.list[i];
         set_properties(source.id(), live->id(), diff.changed);
       }
       order.push_back(live);
@@ -223,7 +223,7 @@ class PatchApplier {
   // The same for tendons; one through other points is made again.
   void apply_tendons() {
     sim::TendonList& tendons = patch_.world.tendons();
-    for (const auto& [body, name] : patch_.diff.removed_tendons) {
+    for (const auto& [body, name] : patch_.diff.tendons.removed) {
       const sim::Body* const owner = body_named(body);
       if (sim::Tendon* const removed = owner == nullptr ? nullptr : tendons.find(*owner, name))
         tendons.remove(*removed);
@@ -247,7 +247,7 @@ class PatchApplier {
         live = *added;
         set_properties(source, live->id(), described_mask(sim::Tendon::table()));
       } else {
-        set_properties(source, live->id(), patch_.diff.tendons[i].changed);
+        set_properties(source, live->id(), patch_.diff.tendons.list[i].changed);
       }
       order.push_back(live);
     }
