@@ -4,6 +4,7 @@
 
 #include <cfenv>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <new>
 #include <string>
@@ -121,7 +122,10 @@ Result<Message> message_of(const char* address, const limber_value* values, std:
   Message message{address, {}};
   for (std::size_t i = 0; i < count; i++) {
     const limber_value& value = values[i];
-    switch (value.kind) {
+    int kind = 0;  // may be none of the enumeration
+    static_assert(sizeof kind == sizeof value.kind);
+    std::memcpy(&kind, &value.kind, sizeof kind);
+    switch (kind) {
       case LIMBER_NUMBER:
         message.args.push_back(Arg::of(value.number));
         break;

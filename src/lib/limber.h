@@ -72,14 +72,14 @@ typedef void (*limber_log_function)(void* context, limber_log_level level, const
 
 /* Options of a simulation. Begin with LIMBER_OPTIONS, which sets the size and all others to 0. */
 typedef struct limber_options {
-  size_t size;                /* sizeof(limber_options) */
-  const char* file;           /* scene file, or with `text` its name: where it finds other files (null: ./scene.lua) */
-  const char* text;           /* text of the scene; null: it is read from `file` */
-  const char* data;           /* folder with the installed scripts/ and urdf/; null: share/limber beside the library */
-  const uint64_t* seed;       /* random seed, 0 to 2^53; null: that of the scene */
-  int threads;                /* threads of each physics step, 1 to 64, 0: 1; the result is the same for any number */
-  limber_log_function log;    /* null: log lines are dropped */
-  void* log_context;          /* first argument of `log` */
+  size_t size;             /* sizeof(limber_options) */
+  const char* file;        /* scene file, or with `text` its name: where it finds other files (null: ./scene.lua) */
+  const char* text;        /* text of the scene; null: it is read from `file` */
+  const char* data;        /* folder with the installed scripts/ and urdf/; null: share/limber beside the library */
+  const uint64_t* seed;    /* random seed, 0 to 2^53; null: that of the scene */
+  int threads;             /* threads of each physics step, 1 to 64, 0: 1; the result is the same for any number */
+  limber_log_function log; /* null: log lines are dropped */
+  void* log_context;       /* first argument of `log` */
 } limber_options;
 
 #define LIMBER_OPTIONS \

@@ -128,6 +128,34 @@ CLI::Option* add_model_options(CLI::App& play, PlayOptions& o) {
   return save_scene;
 }
 
+// Options of the values with which a run starts; a replay has its own.
+struct StartOptions {
+  CLI::Option *seed = nullptr, *params = nullptr, *sets = nullptr, *preset = nullptr;
+};
+StartOptions add_start_options(CLI::App& play, PlayOptions& o) {
+  StartOptions start;
+  start.seed = play.add_option("--seed", o.seed, "Seed of the random numbers; overrides sim.seed of the scene.")
+                   ->type_name("N")
+                   ->check(plain_count());
+  start.params = play.add_option("--param", o.run.params,
+                                 "Set a parameter of the scene (params { … }), applied before --set; may be repeated.")
+                     ->type_name("NAME=VALUE")
+                     ->allow_extra_args(false);
+  start.sets =
+      play.add_option(
+              "--set", o.run.sets,
+              "Set a value after the scene has run; a path or an OSC address of ofxDabPhysics; may be repeated.")
+          ->type_name("PATH=VALUE")
+          ->allow_extra_args(false);
+  play.add_option("--out", o.run.out,
+                  "Write the columns of sim:record to this file, .csv or .jsonl, or to a folder, together with the "
+                  "results, the seed, the parameters and the state hash.")
+      ->type_name("FILE|DIR");
+  start.preset = play.add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
+                     ->type_name("NAME");
+  return start;
+}
+
 }  // namespace
 
 void add_play_options(CLI::App& command, PlayOptions& o) {
@@ -147,27 +175,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
                      "Advance only by /transport/step, as fast as it is sent; each is answered by /transport/stepped.")
           ->excludes(fast);
   add_run_options(*play, o);
-  CLI::Option* seed = play->add_option("--seed", o.seed, "Seed of the random numbers; overrides sim.seed of the scene.")
-                          ->type_name("N")
-                          ->check(plain_count());
-  CLI::Option* params =
-      play->add_option("--param", o.run.params,
-                       "Set a parameter of the scene (params { … }), applied before --set; may be repeated.")
-          ->type_name("NAME=VALUE")
-          ->allow_extra_args(false);
-  CLI::Option* sets =
-      play->add_option(
-              "--set", o.run.sets,
-              "Set a value after the scene has run; a path or an OSC address of ofxDabPhysics; may be repeated.")
-          ->type_name("PATH=VALUE")
-          ->allow_extra_args(false);
-  play->add_option("--out", o.run.out,
-                   "Write the columns of sim:record to this file, .csv or .jsonl, or to a folder, together with the "
-                   "results, the seed, the parameters and the state hash.")
-      ->type_name("FILE|DIR");
-  CLI::Option* preset =
-      play->add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
-          ->type_name("NAME");
+  const StartOptions start = add_start_options(*play, o);
   add_network(*play, o.network);
   CLI::Option* const save_scene = add_model_options(*play, o);
   play->add_flag("--watch", o.watch,
@@ -183,10 +191,10 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
           ->excludes(lockstep)
           ->excludes(scene)
           ->excludes(save_scene)
-          ->excludes(seed)
-          ->excludes(params)
-          ->excludes(sets)
-          ->excludes(preset);
+          ->excludes(start.seed)
+          ->excludes(start.params)
+          ->excludes(start.sets)
+          ->excludes(start.preset);
   play->add_flag("--recover", o.recover,
                  "Restore the values that the scene had when its last run crashed; the program reports at start if "
                  "there are any.")

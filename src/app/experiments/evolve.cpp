@@ -92,6 +92,7 @@ Result<std::size_t> Evolution::result_index(const std::string& name, const char*
   if (results.empty())
     return Error{"the scene declares no results; add result(\"distance\", function() return … end) to it"};
   std::vector<std::string> names;
+  names.reserve(results.size());
   for (const ResultInfo& result : results) names.push_back(result.name);
   return Error{fmt::format("{} {}: the scene has no such result{}", option, printable(name), name_hint(name, names))};
 }

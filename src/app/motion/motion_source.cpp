@@ -39,7 +39,7 @@ struct NamedValue {
 // the exported values of a joint
 std::vector<NamedValue> exported_values(model::JointType type) {
   const JointOffsets& layout = joint_offsets();
-  const std::vector<NamedValue> turned = {
+  std::vector<NamedValue> turned = {
       {"angle_x", layout.relrot, true}, {"angle_y", layout.relrot + 1, true}, {"angle_z", layout.relrot + 2, true}};
   std::vector<NamedValue> shifted = {{"shift_x", layout.offsets, false},
                                      {"shift_y", layout.offsets + 1, false},
