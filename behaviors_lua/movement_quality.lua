@@ -31,7 +31,7 @@ local function draw(self, name, quality)
   s.angles[name] = angles
 end
 
--- each share approaches 1 for the chosen quality and 0 for the others
+-- moves the share of the chosen quality towards 1, and those of the others towards 0
 local function morph(self, dt)
   local shares = self.state.shares
   for _, name in ipairs(names) do

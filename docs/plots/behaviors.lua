@@ -156,7 +156,7 @@ local function beside(name, at, x, other_velocity)
   return ball(name, at)
 end
 
--- a dancer who stands still, and one who dances
+-- two sources of motion capture: one stays at its place, the other moves
 local film = { source = "scripts/motion/dancer.bvh", unit = "cm", speed = 0, offset = vec3(0, -100, 0) }
 local statue = sim:add_mocap("statue", film)
 film.speed = 1

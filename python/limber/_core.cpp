@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <cstring>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -123,6 +124,12 @@ limber_value value_of(const py::handle& object, std::vector<std::string>& texts)
   return {LIMBER_NUMBER, object.cast<double>(), nullptr};
 }
 
+// A text as str. Scripts may print and send bytes that are not UTF-8, which are replaced.
+py::str text_of(const char* text) {
+  return py::reinterpret_steal<py::str>(
+      PyUnicode_DecodeUTF8(text, static_cast<Py_ssize_t>(std::strlen(text)), "replace"));
+}
+
 py::object object_of(const limber_value& value) {
   switch (value.kind) {
     case LIMBER_NUMBER:
@@ -130,7 +137,7 @@ py::object object_of(const limber_value& value) {
     case LIMBER_BOOLEAN:
       return py::bool_(value.number != 0);
     case LIMBER_TEXT:
-      return py::str(value.text);
+      return text_of(value.text);
     default:
       return py::none();
   }
@@ -172,7 +179,6 @@ class Sim {
       status = limber_step(sim_.get(), ticks);
     }
     check(status);
-    if (PyErr_Occurred() != nullptr) throw py::error_already_set();
   }
   void reset(std::optional<std::uint64_t> seed) {
     limber_status status = LIMBER_OK;
@@ -215,7 +221,7 @@ class Sim {
       check(status);
       py::tuple arguments(event.count);
       for (std::size_t i = 0; i < event.count; i++) arguments[i] = object_of(event.values[i]);
-      list.append(py::make_tuple(py::str(event.address), arguments));
+      list.append(py::make_tuple(text_of(event.address), arguments));
     }
     return list;
   }
@@ -245,14 +251,15 @@ class Sim {
   std::uint64_t faults() const { return limber_faults(sim_.get()); }
 
  private:
-  // an exception of the function is raised by the step that caused the line
+  // An exception of the function can't pass through the library, so Python reports it as ignored; Ctrl+C is raised
+  // again after the call.
   static void log_line(void* context, limber_log_level level, const char* text) {
     const py::gil_scoped_acquire acquire;
-    if (PyErr_Occurred() != nullptr) return;
     try {
       static constexpr const char* kLevels[] = {"info", "warning", "error", "print"};
-      (*static_cast<py::object*>(context))(kLevels[level], py::str(text));
+      (*static_cast<py::object*>(context))(kLevels[level], text_of(text));
     } catch (py::error_already_set& error) {
+      if (error.matches(PyExc_KeyboardInterrupt)) return PyErr_SetInterrupt();
       error.discard_as_unraisable("limber: the log function");
     }
   }

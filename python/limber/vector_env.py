@@ -159,8 +159,8 @@ class VectorEnv:
         self, *, seed: Union[int, Sequence[int], None] = None, options: Optional[Dict[str, Any]] = None
     ) -> Tuple[np.ndarray, List[Dict[str, Any]]]:
         """Resets all. seed: one for each; or a number, to which the index of the environment is added."""
-        if isinstance(seed, int):
-            seeds: List[Optional[int]] = [seed + i for i in range(self.num_envs)]
+        if isinstance(seed, (int, np.integer)):
+            seeds: List[Optional[int]] = [int(seed) + i for i in range(self.num_envs)]
         else:
             seeds = [None] * self.num_envs if seed is None else list(seed)
         if len(seeds) != self.num_envs:

@@ -912,9 +912,9 @@ function mocap_:add_body(name, opts) end
 ---@field radius? number # default 0.04. Radius of the capsules, m.
 
 ---@class mocap_opts
----@field source? string # A BVH file (`"dance.bvh"`), `"osc"` for `/mocap/joint/pos_world` and its relatives, or `"vmc"`.
+---@field source? string # A BVH file (`"dance.bvh"`), `"osc"` for `/mocap/joint/pos_world` and similar addresses, or `"vmc"`.
 ---@field dancer? integer|string # For `"osc"`: N receives `/mocap/N/joint/…`; without it, `/mocap/joint/…`.
----@field messages? table<string, string> # For any other dialect: words that name the arguments of each address.
+---@field messages? table<string, string> # For any other format: each address and the words that name its arguments.
 ---@field joints? string[] # Expected joints; messages without names have them in this order.
 ---@field bones? table[] # Parents: a list of `{ parent, child }` or `{ parent, child, length }`, m.
 ---@field up? "x"|"y"|"z" # The vertical axis of the source; default "z", for files and VMC "y".
@@ -943,7 +943,7 @@ function mocap_:add_body(name, opts) end
 ---@field alive boolean # read-only. True while it exists.
 ---@field mocap mocap # read-only. The dancer that it belongs to.
 ---@field parent? mocap_joint # read-only. The joint that it is attached to, or nil.
----@field length number # read-only. Distance from its parent in the first frame, or as declared in `bones`, m.
+---@field length number # read-only. Distance from its parent, m: in the first frame of a file, or as declared in `bones` (default 0.25).
 ---@field position vec3 # read-only, m. Place on stage, world axes.
 ---@field rotation quat # read-only. Rotation on stage.
 ---@field local_rotation quat # read-only. Rotation relative to its parent.

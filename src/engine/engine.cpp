@@ -132,12 +132,16 @@ bool Engine::restart(std::optional<std::uint64_t> seed) {
   const std::uint64_t previous = world().seed();
   std::optional<std::uint64_t>& option = show_.options.scene_options.seed;
   const std::optional<std::uint64_t> previous_option = std::exchange(option, seed ? seed : option);
+  const Overrides previous_overrides = show_.overrides;
   show_.overrides.clear();
-  show_.undo_stack.clear();
   // the reset copies the seed of the present world, and prefers one that was set since the start
   if (option) set_seed(*option);
   show_.scene_seed = world().seed();
-  if (scenes_.reset()) return true;
+  if (scenes_.reset()) {
+    show_.undo_stack.clear();
+    return true;
+  }
+  show_.overrides.restore(previous_overrides);
   set_seed(previous);
   option = previous_option;
   show_.scene_seed = previous;

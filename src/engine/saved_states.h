@@ -2,7 +2,6 @@
 // the simulation. [sim]
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 
@@ -28,8 +27,6 @@ class SavedStates {
   Result<void> restore(const SavedState& state);
   /// Discards a state; a later one reuses its memory.
   void discard(SavedState& state) { store_.recycle(std::move(state.checkpoint)); }
-  /// Memory of all states, bytes.
-  std::size_t bytes() const { return store_.bytes(); }
 
  private:
   ShowState& show_;

@@ -66,6 +66,12 @@ Result<double> value_of(const std::string& word, const ParameterInfo& parameter)
   return *number;
 }
 
+std::vector<double> whole_numbers(double min, double max) {
+  std::vector<double> values;
+  for (double value = min; value <= max; value++) values.push_back(value);
+  return values;
+}
+
 // the values of a grid over the range
 std::vector<double> grid_values(const AxisText& text) {
   std::vector<double> values;
@@ -135,9 +141,6 @@ Result<Axis> make_axis(const AxisText& text, const ParameterInfo& parameter) {
   } else {
     axis.values = grid_values(text);
     axis.listed = parameter.whole;
-    if (parameter.whole && axis.values.empty()) {
-      for (double value = text.min; value <= text.max; value++) axis.values.push_back(value);
-    }
   }
   if (axis.values.size() > kMaxValues)
     return Error{fmt::format("--param {}: more than {} values", parameter.name, kMaxValues)};
@@ -148,6 +151,8 @@ Result<Axis> make_axis(const AxisText& text, const ParameterInfo& parameter) {
   if (!fit)
     return Error{fmt::format("--param {}: values must be {} {}", parameter.name,
                              parameter.whole ? "whole numbers within" : "within", range_of(parameter))};
+  // after the check of the range, which bounds their number
+  if (axis.values.empty() && parameter.whole) axis.values = whole_numbers(axis.min, axis.max);
   return axis;
 }
 
@@ -157,9 +162,7 @@ Result<Axis> whole_axis(const ParameterInfo& parameter) {
         fmt::format("the parameter '{}' has no range; add min and max to its declaration, or --param {}=MIN:MAX",
                     parameter.name, parameter.name)};
   Axis axis{parameter.name, parameter.min, parameter.max, {}, parameter.whole, parameter.choices};
-  if (parameter.whole) {
-    for (double value = parameter.min; value <= parameter.max; value++) axis.values.push_back(value);
-  }
+  if (parameter.whole) axis.values = whole_numbers(parameter.min, parameter.max);
   return axis;
 }
 

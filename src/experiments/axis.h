@@ -1,4 +1,4 @@
-// Axis: one varied parameter of an experiment: its values, or a range. [any]
+// Axis: a varied parameter of an experiment, with its values or its range. [any]
 #pragma once
 
 #include <string>
@@ -19,7 +19,7 @@ struct ParameterInfo {
   bool whole = false;                ///< A boolean or a choice: only whole numbers are values.
 };
 
-/// `--param NAME=VALUES` as typed: a range, MIN:MAX:STEP, MIN:MAX/N, or a list of numbers or words.
+/// `--param NAME=VALUES` as typed: MIN:MAX, MIN:MAX:STEP, MIN:MAX/N, or a list of numbers or words.
 struct AxisText {
   std::string name;
   std::vector<std::string> words;  ///< The items of a list; empty: a range.
@@ -38,7 +38,7 @@ struct Axis {
   std::string name;
   double min = 0;
   double max = 0;
-  std::vector<double> values;  ///< Grid values in ascending order of the text; empty: a range without a step.
+  std::vector<double> values;  ///< Values of a grid or list, in the order of the text; empty: a range without a step.
   bool listed = false;         ///< Only `values` are valid: a list, a boolean or a choice.
   std::vector<std::string> choices;
 
@@ -48,10 +48,10 @@ struct Axis {
   std::string text(double value) const;
 };
 
-/// Number of values of an axis, and of points of a design, at most.
+/// Maximum number of values of an axis, and of seeds.
 inline constexpr std::size_t kMaxValues = 100'000;
 
-/// Checks the text against the scene's parameter. Errors: a value outside of the range, an unknown word.
+/// Checks the text against the scene's parameter. Errors: a value outside the range, an unknown word.
 Result<Axis> make_axis(const AxisText& text, const ParameterInfo& parameter);
 /// An axis over the whole range of a parameter; error if it has none.
 Result<Axis> whole_axis(const ParameterInfo& parameter);

@@ -227,7 +227,8 @@ Result<CmaEs> CmaEs::restore(std::string_view text) try {
   es.path_c_ = json.at("path_c").get<Vector>();
   es.path_sigma_ = json.at("path_sigma").get<Vector>();
   const std::size_t n = es.mean_.size();
-  if (n == 0 || es.covariance_.size() != n * n || es.path_c_.size() != n || es.path_sigma_.size() != n)
+  if (es.population_ > kMaxPopulation || n == 0 || es.covariance_.size() != n * n || es.path_c_.size() != n ||
+      es.path_sigma_.size() != n)
     return Error{"the state of the search is damaged"};
   es.set_weights();
   es.decompose();

@@ -17,6 +17,8 @@ namespace limber::experiments {
 class CmaEs {
  public:
   using Vector = std::vector<double>;
+  /// Maximum number of individuals per generation.
+  static constexpr std::size_t kMaxPopulation = 100'000;
 
   /// `start`: the initial mean. `sigma`: the initial standard deviation along each axis. `population`: individuals per
   /// generation, at least 4; 0: 4 + floor(3 ln n).

@@ -78,7 +78,8 @@ Result<Dispatcher::End> Dispatcher::run(const std::function<std::optional<Evalua
   }
 }
 
-// Returns the index of a task to begin: one to be done again, else a new one, unless too many wait for a slow one.
+// Returns the index of the next task: one that has to be tried again, else a new one, unless too many outcomes wait for
+// a slow evaluation.
 std::optional<std::uint64_t> Dispatcher::next_task(const std::function<std::optional<Evaluation>()>& next) {
   if (!again_.empty()) {
     const auto oldest = std::ranges::min_element(again_);
@@ -123,7 +124,7 @@ Result<void> Dispatcher::handle(const Workers::Event& event) {
     return {};
   }
   auto& outcome = std::get<Outcome>(*answer);
-  if (state.phase != Phase::busy) return {};  // of an evaluation that was given up
+  if (state.phase != Phase::busy) return {};  // of an abandoned evaluation
   Task& task = tasks_[state.task];
   if (outcome.number == task.evaluation.number) task.outcome = std::move(outcome);
   if (!task.outcome) return lose(event.worker, "the simulation returned another evaluation");
@@ -131,12 +132,12 @@ Result<void> Dispatcher::handle(const Workers::Event& event) {
   return {};
 }
 
-// Notes that a worker is gone. Its evaluation is done again, or fails after kTries.
+// Marks a worker as down. Its evaluation is tried again, and fails after kTries.
 Result<void> Dispatcher::lose(std::size_t worker, const std::string& reason) {
   WorkerState& state = states_[worker];
   const Phase before = std::exchange(state.phase, Phase::down);
   if (before == Phase::down) return {};
-  options_.on_restart(worker);
+  options_.on_restart();
   if (before != Phase::busy) {
     if (++state.failed_starts < (scene_ ? kMaxFailedRestarts : kMaxFailedStarts)) return {};
     return Error{fmt::format("{} {} times before it could begin; check the scene with limber play", reason,

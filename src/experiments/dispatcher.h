@@ -18,8 +18,8 @@
 
 namespace limber::experiments {
 
-/// The transport: starts workers, which are numbered from 0, and exchanges lines of text with them. Implemented with
-/// local child processes; another implementation may use other machines.
+/// The transport: starts workers, which are numbered from 0, and exchanges lines of text with them. app/experiments
+/// implements it with child processes.
 class Workers {
  public:
   Workers() = default;
@@ -49,10 +49,10 @@ class Dispatcher {
   static constexpr std::uint64_t kAhead = 256;
 
   struct Options {
-    double time_limit = 300;                                    ///< Real time of an evaluation, s.
-    std::function<bool()> canceled = [] { return false; };      ///< Polled at least ten times a second.
-    std::function<double()> clock = system::clock_seconds;      ///< Real time, s.
-    std::function<void(std::size_t)> on_restart = [](auto) {};  ///< A worker is restarted.
+    double time_limit = 300;                                ///< Real time of an evaluation, s.
+    std::function<bool()> canceled = [] { return false; };  ///< Polled at least ten times a second.
+    std::function<double()> clock = system::clock_seconds;  ///< Real time, s.
+    std::function<void()> on_restart = [] {};               ///< Called when a worker has to be restarted.
   };
   enum class End : std::uint8_t { done, canceled };
 
@@ -60,11 +60,11 @@ class Dispatcher {
     states_.resize(workers.count());
   }
 
-  /// Sets up the first worker and returns what the scene declares. The error is that of the scene.
+  /// Sets up the first worker. Returns the scene's parameters and results, or the scene's error if its script fails.
   Result<SceneInfo> describe(const WorkerSetup& setup);
   /// Uses this setup for all following evaluations.
   void set_setup(const WorkerSetup& setup);
-  /// Evaluates what `next` returns until it returns nothing. `commit` is called for each outcome, in the order of
+  /// Evaluates each value of `next` until it returns nothing. `commit` is called for each outcome, in the order of
   /// `next`; an error from it ends the run.
   Result<End> run(const std::function<std::optional<Evaluation>()>& next,
                   const std::function<Result<void>(const Evaluation&, const Outcome&)>& commit);
@@ -96,8 +96,8 @@ class Dispatcher {
   WorkerSetup setup_;
   std::vector<WorkerState> states_;
   std::optional<SceneInfo> scene_;       ///< Of the last setup.
-  std::map<std::uint64_t, Task> tasks_;  ///< Those that are not committed, by index.
-  std::vector<std::uint64_t> again_;     ///< Indices of tasks to be done again.
+  std::map<std::uint64_t, Task> tasks_;  ///< Tasks that are not committed, by index.
+  std::vector<std::uint64_t> again_;     ///< Indices of tasks that are evaluated again.
   std::uint64_t created_ = 0;            ///< Number of tasks so far.
   bool exhausted_ = false;               ///< `next` has returned nothing.
 };

@@ -1,5 +1,5 @@
-// An evaluation: one run of the scene with given values of its parameters and a seed; and the lines of JSON in which a
-// worker receives it and returns its outcome. [any]
+// Evaluation: a run of the scene with given values of its parameters and a seed. Messages between the program and its
+// workers are lines of JSON. [any]
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace limber::experiments {
 
-/// What all evaluations of an experiment have in common.
+/// The part that all evaluations of an experiment share.
 struct WorkerSetup {
   std::string scene;
   double duration = 0;                  ///< s
@@ -31,7 +31,7 @@ struct Outcome {
   std::uint64_t number = 0;
   std::vector<double> results;  ///< In the order of SceneInfo::results; NaN: no value.
   std::uint64_t hash = 0;       ///< State hash at the end.
-  std::string error;            ///< Why it failed; empty: it succeeded.
+  std::string error;            ///< Reason of the failure; empty: it succeeded.
 };
 
 /// A result that the scene declares.
@@ -42,7 +42,7 @@ struct ResultInfo {
   int cells = 0;  ///< 0: it has no range.
 };
 
-/// What the scene declares.
+/// The parameters and results that a scene declares.
 struct SceneInfo {
   std::vector<ParameterInfo> parameters;
   std::vector<ResultInfo> results;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -72,14 +71,6 @@ void MapElites::tell(const std::vector<Vector>& individuals, const std::vector<E
     at->second = {individuals[i], value.fitness, value.descriptors, generation_, i, value.hash};
   }
   generation_++;
-}
-
-double MapElites::best() const {
-  double best = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& [cell, elite] : elites_) {
-    if (!(elite.fitness <= best)) best = elite.fitness;
-  }
-  return best;
 }
 
 std::string MapElites::save() const {

@@ -59,8 +59,6 @@ class MapElites {
   std::uint64_t cells() const;
   /// Returns the number of the cell; values outside of a range belong to its first or last cell.
   std::uint64_t cell_of(const Vector& descriptors) const;
-  /// Best fitness in the archive; NaN if it is empty.
-  double best() const;
 
   /// Returns the state between tell() and ask() as text, and restores it into a search with the same options.
   std::string save() const;

@@ -3,16 +3,15 @@
 
 #include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <optional>
 #include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "base/csv.h"
 #include "base/system/file.h"
 #include "base/text.h"
 
@@ -22,13 +21,6 @@ namespace {
 
 using RowJson = nlohmann::ordered_json;
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{4} << 30;
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of("\",\n\r") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out.append(c == '"' ? 2 : 1, c);
-  return out + "\"";
-}
 
 // splits a line of CSV
 std::vector<std::string> csv_cells(std::string_view line) {
@@ -71,27 +63,24 @@ std::optional<std::vector<std::string>> json_cells(std::string_view line, const 
 Cell Cell::of(double value) { return {std::isfinite(value) ? number_text(value) : "", true}; }
 Cell Cell::of(std::uint64_t value) { return {std::to_string(value), true}; }
 
-Result<void> ResultTable::create(const std::string& path, std::vector<std::string> columns, bool overwrite) {
+void ResultTable::set_file(const std::string& path, std::vector<std::string> columns) {
   path_ = path;
   json_ = path.ends_with(".jsonl");
   columns_ = std::move(columns);
+}
+
+Result<void> ResultTable::create(const std::string& path, std::vector<std::string> columns, bool overwrite,
+                                 std::string_view advice) {
+  set_file(path, std::move(columns));
   file_ = system::open_file(path, overwrite ? system::OpenMode::replace : system::OpenMode::create_new);
-  if (!file_.is_open() && errno == EEXIST)
-    return Error{
-        fmt::format("{} already exists: continue it with --resume, overwrite it with --overwrite, or choose "
-                    "another name",
-                    printable(path))};
+  if (!file_.is_open() && errno == EEXIST) return Error{fmt::format("{} already exists: {}", printable(path), advice)};
   if (!file_.is_open()) return Error{fmt::format("{} can't be created: {}", printable(path), system::error_reason())};
-  std::vector<Cell> names;
-  for (const std::string& column : columns_) names.push_back(Cell::of(column));
-  return json_ ? Result<void>() : write(line_of(names));
+  return json_ ? Result<void>() : append(header());
 }
 
 Result<std::vector<std::vector<std::string>>> ResultTable::resume(const std::string& path,
                                                                   std::vector<std::string> columns) {
-  path_ = path;
-  json_ = path.ends_with(".jsonl");
-  columns_ = std::move(columns);
+  set_file(path, std::move(columns));
   Result<std::string> read = system::read_file(path, kMaxBytes);
   if (!read) return Error{fmt::format("{}: {}", printable(path), read.error())};
   std::string& text = *read;
@@ -114,16 +103,20 @@ Result<std::vector<std::vector<std::string>>> ResultTable::resume(const std::str
   if (complete < text.size()) std::filesystem::resize_file(path, complete, error);
   if (error) return Error{fmt::format("{} can't be written: {}", printable(path), error.message())};
   file_ = system::open_file(path, system::OpenMode::append);
-  if (!file_.is_open()) return Error{fmt::format("{} can't be written: {}", printable(path), system::error_reason())};
+  if (!file_.is_open()) return write_error();
   return rows;
 }
 
 void ResultTable::write_to(std::function<bool(std::string_view)> write_function, std::vector<std::string> columns) {
   write_ = std::move(write_function);
   columns_ = std::move(columns);
+  (void)append(header());  // if this fails, so do the rows
+}
+
+std::vector<Cell> ResultTable::header() const {
   std::vector<Cell> names;
   for (const std::string& column : columns_) names.push_back(Cell::of(column));
-  (void)write_(line_of(names));
+  return names;
 }
 
 std::string ResultTable::line_of(const std::vector<Cell>& cells) const {
@@ -131,13 +124,12 @@ std::string ResultTable::line_of(const std::vector<Cell>& cells) const {
   for (std::size_t i = 0; i < cells.size(); i++) {
     line += i == 0 ? (json_ ? "{" : "") : ",";
     if (!json_) {
-      line += quoted(cells[i].text);
+      line += csv_cell(cells[i].text);
       continue;
     }
     line += RowJson(columns_[i]).dump() + ":";
-    const bool bare = cells[i].number;
-    line += bare ? (cells[i].text.empty() ? "null" : cells[i].text)
-                 : RowJson(cells[i].text).dump(-1, ' ', false, RowJson::error_handler_t::replace);
+    line += cells[i].number ? (cells[i].text.empty() ? "null" : cells[i].text)
+                            : RowJson(cells[i].text).dump(-1, ' ', false, RowJson::error_handler_t::replace);
   }
   return line + (json_ ? "}\n" : "\n");
 }
@@ -148,14 +140,15 @@ Result<void> ResultTable::write(std::string_view text) {
   if (write_) return write_(text) ? Result<void>() : Error{"the standard output was closed"};
   if (system::write_all(file_.fd(), text)) return {};
   failed_ = true;
-  return Error{
-      fmt::format("{} can't be written: {}. The rows before are kept; free disk space and continue with "
-                  "--resume",
-                  printable(path_), system::error_reason())};
+  return write_error();
 }
 
 Result<void> ResultTable::finish() {
   if (!file_.is_open() || system::sync_file(file_.fd()) || errno == EINVAL) return {};
+  return write_error();
+}
+
+Error ResultTable::write_error() const {
   return Error{fmt::format("{} can't be written: {}", printable(path_), system::error_reason())};
 }
 

@@ -1,6 +1,5 @@
-// ResultTable: a table that grows by one row after the other, in a file: CSV, or JSON Lines if its name ends with
-// .jsonl. A row that was written stays; if a write fails, or the program is killed, at most the last row is incomplete,
-// and resuming removes it. [one thread]
+// ResultTable: appends rows to a file: CSV, or JSON Lines if its name ends with .jsonl. If a write fails, or the
+// program is killed, at most the last row is incomplete, and resume() removes it. [one thread]
 #pragma once
 
 #include <cstdint>
@@ -14,26 +13,26 @@
 
 namespace limber::experiments {
 
-/// A cell: a number (or nothing) is written without quotes in JSON.
 struct Cell {
-  std::string text;
-  bool number = false;
+  std::string text;     ///< Empty: no value.
+  bool number = false;  ///< JSON has it without quotation marks.
 
   static Cell of(double value);
   static Cell of(std::uint64_t value);
   static Cell of(std::string text) { return {std::move(text), false}; }
-  bool operator==(const Cell&) const = default;
 };
 
 class ResultTable {
  public:
   ResultTable() = default;
-  /// Creates the file; fails if it exists and not `overwrite`. For CSV, writes the names of the columns.
-  Result<void> create(const std::string& path, std::vector<std::string> columns, bool overwrite);
-  /// Opens a file that a previous run has left, removes an incomplete last row, and returns the texts of the cells of
-  /// all rows. Fails if it has other columns.
+  /// Creates the file. For CSV, writes the names of the columns. If the file exists and `overwrite` is false, fails
+  /// with an error that ends with `advice`.
+  Result<void> create(const std::string& path, std::vector<std::string> columns, bool overwrite,
+                      std::string_view advice);
+  /// Opens the file of an earlier run, removes an incomplete last row, and returns the texts of the cells of all rows.
+  /// Fails if the file has other columns.
   Result<std::vector<std::vector<std::string>>> resume(const std::string& path, std::vector<std::string> columns);
-  /// Writes rows to this function instead of a file.
+  /// Writes rows as CSV to this function instead of a file. It returns false on failure.
   void write_to(std::function<bool(std::string_view)> write, std::vector<std::string> columns);
 
   /// Appends a row, with one cell per column.
@@ -44,7 +43,10 @@ class ResultTable {
   bool failed() const { return failed_; }
 
  private:
+  void set_file(const std::string& path, std::vector<std::string> columns);
+  std::vector<Cell> header() const;
   Result<void> write(std::string_view text);
+  Error write_error() const;
   std::string line_of(const std::vector<Cell>& cells) const;
 
   std::string path_;

@@ -55,8 +55,10 @@ class CmaSearch final : public Search {
     if (!es) return Error{es.error()};
     if (es->mean().size() != axes_) return Error{"the saved search has other parameters"};
     std::vector<Elite> elites;
-    for (const Json& e : json.at("elites"))
+    for (const Json& e : json.at("elites")) {
       elites.push_back({e.at(0).get<Vector>(), e.at(1), {}, e.at(2), e.at(3), e.at(4)});
+      if (elites.back().individual.size() != axes_) return Error{"the saved search has other parameters"};
+    }
     es_ = std::move(*es);
     elites_ = std::move(elites);
     return {};

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/csv.h"
 #include "base/system/file.h"
 #include "base/text.h"
 #include "export/atomic_file.h"
@@ -16,14 +17,6 @@
 namespace limber::exporter {
 
 namespace {
-
-// quotes a column name if necessary; names are already escaped for OSC, so only quotation marks need doubling
-std::string cell_of(const std::string& name) {
-  if (name.find_first_of("\",\n\r") == std::string::npos) return name;
-  std::string out = "\"";
-  for (const char c : name) out.append(c == '"' ? 2 : 1, c);
-  return out + "\"";
-}
 
 // shortest text with the simulation's (single) precision
 void append_number(std::string& line, double value) {
@@ -87,7 +80,7 @@ class CsvWriter : public MotionWriter {
   };
 
   void add_column(const std::string& name) {
-    header_ += "," + cell_of(name);
+    header_ += "," + csv_cell(name);
     columns_++;
   }
 

@@ -22,7 +22,6 @@ namespace limber::lib {
 
 namespace {
 
-constexpr std::uint64_t kMaxSteps = std::uint64_t{1} << 53;
 constexpr std::size_t kMaxValues = 65536;
 
 std::string& error_text() {
@@ -39,7 +38,7 @@ limber_status fail(limber_status status, std::string_view text) {
   return status;
 }
 
-// The rounding mode and the floating-point flags of the calling thread, which are the defaults meanwhile.
+// Sets the default rounding mode and floating-point flags, and restores those of the calling thread at its end.
 class ArithmeticScope {
  public:
   ArithmeticScope() {
@@ -174,6 +173,10 @@ limber_status limber_create(const limber_options* options, limber_sim** out) {
     limber::log_to_stderr(false);  // of threads that belong to no simulation
     limber::lib::ProgramLog log(options->log, options->log_context);
     const limber::LogSink::Scope scope(log);
+    if (limber::fixed::bind_libm() == 0 && !limber::fixed::is_libm_replaced())
+      limber::log_warning(
+          "LuaJIT and Bullet use the mathematical functions of the C library here; results may differ from "
+          "those of the program limber");
     auto sim = std::make_unique<limber_sim>(*options);
     if (const limber::Result<void> started = sim->simulation.start(); !started)
       return fail(LIMBER_SCENE_ERROR, started.error());
@@ -201,7 +204,7 @@ void limber_destroy(limber_sim* sim) {
 
 limber_status limber_step(limber_sim* sim, uint64_t ticks) {
   return with(sim, [&](Simulation& simulation) {
-    if (ticks > limber::lib::kMaxSteps)
+    if (ticks > limber::lib::kMaxInteger)
       return fail(LIMBER_INVALID_ARGUMENT, fmt::format("the number of ticks must be at most 2^53, got {}", ticks));
     simulation.step(ticks);
     return LIMBER_OK;
@@ -212,10 +215,11 @@ limber_status limber_reset(limber_sim* sim, const uint64_t* seed) {
   return with(sim, [&](Simulation& simulation) {
     std::optional<std::uint64_t> number;
     if (seed != nullptr) number = *seed;
-    if (number.value_or(0) > std::uint64_t{1} << 53)
+    if (number.value_or(0) > limber::lib::kMaxInteger)
       return fail(LIMBER_INVALID_ARGUMENT, fmt::format("seed must be 0 to 2^53, got {}", *seed));
-    return simulation.restart(number) ? LIMBER_OK
-                                      : fail(LIMBER_SCENE_ERROR, "the scene has an error, which the log has");
+    return simulation.restart(number)
+               ? LIMBER_OK
+               : fail(LIMBER_SCENE_ERROR, "the scene has an error; its text is in the log (limber_options::log)");
   });
 }
 

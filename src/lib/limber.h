@@ -66,8 +66,8 @@ typedef enum limber_log_level {
   LIMBER_LOG_PRINT = 3 /* a line of a script's print() */
 } limber_log_level;
 
-/* Receives a log line (UTF-8, without a line end), on the thread of the call that causes it. It must not call the
- * library with the same simulation. */
+/* Receives a log line without its line end, on the thread of the call that causes it: UTF-8, except bytes that a script
+ * prints. It must not call the library with the same simulation. */
 typedef void (*limber_log_function)(void* context, limber_log_level level, const char* text);
 
 /* Options of a simulation. Begin with LIMBER_OPTIONS, which sets the size and all others to 0. */
@@ -129,7 +129,8 @@ LIMBER_API void limber_release(limber_property* property);
  * property has count * width numbers, all numbers of an object together. */
 LIMBER_API size_t limber_count(const limber_property* property);
 LIMBER_API size_t limber_width(const limber_property* property);
-/* The address of an object's property; null if `index` is not below the count. Valid as long as the handle. */
+/* The address of an object's property; null if `index` is not below the count. Valid until limber_release(), or until
+ * the scene has run again and has another object in its place. */
 LIMBER_API const char* limber_address(const limber_property* property, size_t index);
 /* The symbol of the unit; "" for a number without unit. Valid as long as the process. */
 LIMBER_API const char* limber_unit(const limber_property* property);

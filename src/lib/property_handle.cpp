@@ -17,7 +17,7 @@ Result<void> PropertyHandle::add(const Store& store, const PropertyRef& ref) {
   const Property& property = *ref.property;
   const std::string address = fmt::format("{}/{}", path, property.name);
   if (property.width == 0)
-    return Error{fmt::format("{} is {}; limber_send() is for it", address,
+    return Error{fmt::format("{} is {}; use limber_send()", address,
                              property.kind == PropertyKind::action ? "an action" : "a text")};
   if (property_ != nullptr && (table_ != &store.table(ref.node) || property_->index != property.index))
     return Error{
@@ -60,7 +60,16 @@ Result<void> PropertyHandle::refresh(engine::Engine& engine) {
   if (found->count() != count() || found->width() != width())
     return Error{fmt::format("{}: the scene now has {} of these objects instead of {}; find the property again",
                              pattern_, found->count(), count())};
-  *this = std::move(*found);
+  property_ = found->property_;
+  table_ = found->table_;
+  structure_version_ = found->structure_version_;
+  runs_ = found->runs_;
+  for (std::size_t i = 0; i < elements_.size(); i++) {
+    elements_[i].node = found->elements_[i].node;
+    // equal texts stay where they are, because the program may use them (limber_address())
+    if (elements_[i].address != found->elements_[i].address)
+      elements_[i].address = std::move(found->elements_[i].address);
+  }
   return {};
 }
 

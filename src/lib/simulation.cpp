@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "base/build_info.h"
-#include "base/math/fixed_math.h"
 #include "base/system/process.h"
 #include "base/threads/thread_pool.h"
 #include "sim/world/body.h"
@@ -20,10 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxSeed = std::uint64_t{1} << 53;
 constexpr CommandOrigin kOrigin{CommandSource::command_line};
 
-// the folder with the installed data: that of the source tree or the installation that contains the library
+// Returns the folder with the installed data: that of the source tree or the installation that contains the library.
 std::string find_data() {
   std::error_code error;
   std::vector<fs::path> candidates;
@@ -42,7 +40,6 @@ std::string find_data() {
 }
 
 engine::EngineOptions engine_options(const limber_options& options) {
-  (void)fixed::bind_libm();
   engine::EngineOptions engine;
   engine.embedded = true;
   engine.fast = true;
@@ -78,7 +75,7 @@ void copy_vector(const Vec3& from, double* to) {
 
 Result<void> check_options(const limber_options& options) {
   if (options.file == nullptr && options.text == nullptr) return Error{"options: set `file` or `text`"};
-  if (options.seed != nullptr && *options.seed > kMaxSeed)
+  if (options.seed != nullptr && *options.seed > kMaxInteger)
     return Error{fmt::format("options: seed must be 0 to 2^53, got {}", *options.seed)};
   if (options.threads < 0 || options.threads > ThreadPool::kMaxThreads)
     return Error{fmt::format("options: threads must be 0 to {}, got {}", ThreadPool::kMaxThreads, options.threads)};
@@ -128,7 +125,7 @@ Result<void> Simulation::send(Message message) {
   if (!link_.command_queue.push(std::move(command))) return Error{"the message is too large"};
   engine_.idle();
   collect_events();
-  // otherwise the text is a warning, which is in the log, too
+  // if the message was not rejected, the text is a warning, which is also in the log
   if (counters.refused.load() + counters.unknown.load() != rejected) return Error{std::exchange(error_, {})};
   return {};
 }

@@ -24,11 +24,8 @@ struct limber_state {
 
 namespace limber::lib {
 
-/// A status with its text; an empty text for LIMBER_OK.
-struct Failure {
-  limber_status status = LIMBER_OK;
-  std::string text;
-};
+/// Largest seed and number of ticks: a double is exact up to it.
+inline constexpr std::uint64_t kMaxInteger = std::uint64_t{1} << 53;
 
 /// Passes the log lines of a simulation to the program.
 class ProgramLog final : public LogSink {
@@ -54,12 +51,12 @@ class Simulation {
   bool restart(std::optional<std::uint64_t> seed);
   /// Executes a message. The error is that of the message.
   Result<void> send(Message message);
-  /// Moves the oldest event to `event_message` and returns true; false: there is none.
+  /// Moves the oldest event to `event`. False: there is none.
   bool next_event(limber_event& event);
   std::size_t contacts(limber_contact* contacts, std::size_t capacity);
 
   engine::Engine& engine() { return engine_; }
-  const sim::World& world() const { return world_of(engine_); }
+  const sim::World& world() const { return const_cast<engine::Engine&>(engine_).world(); }
   ProgramLog& log() { return log_; }
   std::list<limber_state>& states() { return states_; }
   std::list<limber_property>& properties() { return properties_; }
@@ -71,9 +68,6 @@ class Simulation {
   bool in_its_process() const;
 
  private:
-  static const sim::World& world_of(const engine::Engine& engine) {
-    return const_cast<engine::Engine&>(engine).world();
-  }
   void collect_events();
 
   ProgramLog log_;

@@ -64,7 +64,10 @@ TEST(MocapShow, AWrongFrameIsRejectedWithTheSource) {
   EditedShow edited(kMocapScene, {{"scripts/film.bvh", kFilm}});
   edited.show().send("/mocap/2/joint/pos_world", 1.0);
   edited.show().ticks(1);
-  EXPECT_EQ(source_of(edited.show().engine).joints()[0]->seen(), false);
+  const std::vector<std::string> texts = edited.show().sent_texts();
+  ASSERT_FALSE(texts.empty());
+  EXPECT_EQ(texts.front(), "/error /mocap/2/joint/pos_world mocap 'dancer': takes a multiple of 3 arguments, got 1");
+  EXPECT_FALSE(source_of(edited.show().engine).joints()[0]->seen());
 }
 
 TEST(MocapShow, AnEditThatChangesNothingKeepsTheMotion) {

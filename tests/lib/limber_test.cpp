@@ -114,6 +114,36 @@ TEST(Limber, ResetEqualsANewSimulation) {
   EXPECT_EQ(arm.hash(), third);
 }
 
+TEST(Limber, AddressesRemainValidAfterAReset) {
+  const TestSim arm(kArm);
+  limber_property* const angles = arm.find("/physics/body/arm/joint/*/value");
+  const char* const address = limber_address(angles, 1);
+  const std::string text = address;
+  ASSERT_EQ(limber_reset(arm.sim, nullptr), LIMBER_OK) << limber_last_error();
+  EXPECT_EQ(arm.read(angles).size(), 2u);
+  EXPECT_EQ(limber_address(angles, 1), address);
+  EXPECT_EQ(address, text);
+}
+
+TEST(Limber, FailedResetsChangeNothing) {
+  const TestSim sim(R"(
+    if sim.seed == 2 then error("no seed 2") end
+    sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 0.1))
+  )");
+  const limber_value gravity[] = {
+      {LIMBER_NUMBER, 0, nullptr}, {LIMBER_NUMBER, 0, nullptr}, {LIMBER_NUMBER, -1, nullptr}};
+  ASSERT_EQ(limber_send(sim.sim, "/physics/sim/gravity", gravity, 3), LIMBER_OK) << limber_last_error();
+  sim.step(10);
+  const std::uint64_t before = sim.hash();
+  const std::uint64_t bad = 2;
+  EXPECT_EQ(limber_reset(sim.sim, &bad), LIMBER_SCENE_ERROR);
+  EXPECT_NE(sim.log.all().find("no seed 2"), std::string::npos) << sim.log.all();
+  EXPECT_EQ(sim.hash(), before);
+  EXPECT_EQ(limber_tick(sim.sim), 10u);
+  EXPECT_EQ(limber_reset(sim.sim, nullptr), LIMBER_OK) << limber_last_error();
+  EXPECT_EQ(limber_tick(sim.sim), 0u);
+}
+
 TEST(Limber, MessagesAreExecutedAtOnce) {
   const TestSim sim(R"(osc:on("/echo", function(number, text) osc:send("/reply", number + 1, text) end))");
   const limber_value values[] = {{LIMBER_NUMBER, 4, nullptr}, {LIMBER_TEXT, 0, "word"}};

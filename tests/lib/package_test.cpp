@@ -35,6 +35,16 @@ std::string find_file(const std::string& folder, std::string_view name) {
   return {};
 }
 
+// ./run builds the program alone, so installing it must not need the library.
+TEST(LimberPackage, TheProgramIsInstalledWithoutTheLibrary) {
+  LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer || is_emulated(), kReason);
+  const TempFolder folder;
+  succeed({"cmake", "--install", LIMBER_BUILD, "--prefix", folder.path()});
+  EXPECT_NE(find_file(folder.path(), "limber"), "");
+  EXPECT_EQ(find_file(folder.path(), "liblimber.so"), "");
+  EXPECT_EQ(find_file(folder.path(), "limber.h"), "");
+}
+
 TEST(LimberPackage, ExamplesReachTheHashOfTheProgram) {
   LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer || is_emulated(), kReason);
   const TempFolder folder;

@@ -3,6 +3,7 @@
 import gc
 import multiprocessing
 import os
+import signal
 import sys
 import threading
 import unittest
@@ -106,6 +107,24 @@ class SimTest(unittest.TestCase):
         sim.send("/add", 1, 2.5)
         self.assertEqual(sim.events(), [("/sum", (3.5,))])
         self.assertEqual(sim.events(), [])
+
+    def test_texts_that_are_not_utf_8(self):
+        lines = []
+        text = "print('a\\255') sim:on_start(function() osc:send('/bytes', 'b\\255') end)"
+        sim = limber.Sim(text=text, log=lambda level, line: lines.append((level, line)))
+        self.assertIn(("print", "a\ufffd"), lines)
+        sim.step()
+        self.assertEqual(sim.events(), [("/bytes", ("b\ufffd",))])
+
+    def test_log_functions_that_raise(self):
+        def interrupt(level, line):
+            raise KeyboardInterrupt
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # in case that it was ignored at the start
+        with self.assertRaises(KeyboardInterrupt):
+            limber.Sim(text="print('hello')", log=interrupt)
+            for _ in range(1000):
+                pass
 
     def test_objects_outlive_the_variable(self):
         sim = limber.Sim(text=ARM)

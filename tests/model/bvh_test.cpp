@@ -61,7 +61,6 @@ TEST(Bvh, ReadsTheHierarchy) {
   EXPECT_EQ(clip->channels, 9u);
   EXPECT_EQ(clip->frames, 3u);
   EXPECT_EQ(clip->duration(), 1);
-  EXPECT_EQ(clip->rest_extent(), 2);
 }
 
 TEST(Bvh, PosesAreProductsOfTheChannelsInTheirOrder) {

@@ -13,13 +13,14 @@
 #include "import_text.h"
 #include "model/mesh/load.h"
 #include "model/mesh/mass_properties.h"
+#include "model/pieces/pieces.h"
 
 namespace limber::model {
 namespace {
 
 double volume_of_hulls(const Decomposition& d) {
   double sum = 0;
-  for (const Hull& hull : d.hulls) sum += unit_inertial_of(hull.vertices, hull.triangles).mass;
+  for (const Hull& hull : d.hulls) sum += volume_of(hull);
   return sum;
 }
 

@@ -52,6 +52,10 @@ TEST(MocapScripts, ErrorsNameTheArgument) {
   EXPECT_EQ(error_of("{ source = 'x.bvh', dancer = 1 }"),
             "add_mocap: a file has no messages and no dancer; remove one or the other");
   EXPECT_EQ(error_of("{ source = 'vmc', dancer = 1 }"), "add_mocap: VMC has no dancer; give each its own port");
+  EXPECT_EQ(error_of("{ source = 'vmc', messages = { ['/a'] = 'x y z' } }"),
+            "add_mocap: VMC has messages of its own; remove source or messages");
+  EXPECT_EQ(error_of("{ messages = { ['/a'] = 'x y z' }, dancer = 1 }"),
+            "add_mocap: dancer has no effect on messages; remove it, and write it in their addresses");
   EXPECT_EQ(error_of("{ source = 'osc', joints = { 'a', 'a' } }"),
             "mocap 'a': there is a joint 'a' already; names are unique");
   EXPECT_EQ(error_of("{ source = 'osc', offfset = vec3() }"),

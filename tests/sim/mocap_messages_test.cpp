@@ -64,8 +64,8 @@ TEST(MocapMessages, NameJointsByAnArgumentOrInTheAddress) {
 }
 
 TEST(MocapMessages, RejectArgumentsThatDoNotFit) {
-  EXPECT_EQ(compiled("x y z").count(args({1, 2})).error(), "takes 3 or a multiple of these arguments, got 2");
-  EXPECT_EQ(compiled("x y z").count({}).error(), "takes 3 or a multiple of these arguments, got 0");
+  EXPECT_EQ(compiled("x y z").count(args({1, 2})).error(), "takes a multiple of 3 arguments, got 2");
+  EXPECT_EQ(compiled("x y z").count({}).error(), "takes a multiple of 3 arguments, got 0");
   std::vector<Arg> list = args({1, 2, 3});
   list[1] = Arg::of("2");
   EXPECT_EQ(compiled("x y z").count(list).error(), "argument 2 must be a number");

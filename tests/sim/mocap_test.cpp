@@ -195,13 +195,45 @@ TEST(Mocap, FramesThatDoNotFitAreRejectedAndChangeNothing) {
   MocapFixture s;
   const MocapSource& source = s.add_places();
   s.send("/p", {1, 2, 3});
-  EXPECT_EQ(s.send("/p", {1, 2}), "mocap 'dancer': takes 3 or a multiple of these arguments, got 2");
+  EXPECT_EQ(s.send("/p", {1, 2}), "mocap 'dancer': takes a multiple of 3 arguments, got 2");
   s.ticks(1);
   EXPECT_EQ(s.number(source.id(), "frames"), 1);
   EXPECT_EQ(s.send("/q", {1, 2, 3}), "not received");
   Message flood{"/p", std::vector<Arg>(3 * 257, Arg::of(1.0))};
   EXPECT_EQ(s.list().accept(flood)->error(), "mocap 'dancer': has 257 joints; at most 256 are accepted");
   EXPECT_EQ(source.joints().size(), 1u);
+}
+
+// A joint that a scene expects doesn't take the place of a joint of messages without names.
+TEST(Mocap, NumbersOfMessagesWithoutNamesSkipExpectedJoints) {
+  MocapFixture s;
+  MocapSource& source = s.add_places();
+  ASSERT_TRUE(source.expect("hat").ok());
+  ASSERT_TRUE(source.expect("joint_2").ok());
+  EXPECT_EQ(s.send("/p", {1, 0, 0, 2, 0, 0, 3, 0, 0}), "");
+  s.ticks(1);
+  EXPECT_EQ(source.joints().size(), 4u);
+  EXPECT_FALSE(source.find("hat")->seen());
+  for (const auto& [name, x] : {std::pair("joint_1", 1), {"joint_2", 2}, {"joint_3", 3}}) {
+    ASSERT_NE(source.find(name), nullptr) << name;
+    expect_place(source.find(name)->pose().position, {static_cast<double>(x), 0, 0});
+  }
+}
+
+TEST(Mocap, AnInactiveSourceHasNoVelocity) {
+  MocapFixture s;
+  const MocapSource& source = s.add_places();
+  for (int i = 0; i < 10; i++) {
+    s.send("/p", {i * s.dt(), 0, 0});
+    s.ticks(1);
+  }
+  EXPECT_NEAR(s.number(source.id(), "mean_speed"), 1, 1e-6);
+  const Vec3 place = s.joint(source).pose().position;
+  s.set(source.id(), "active", {0});
+  s.send("/p", {5, 0, 0});
+  s.ticks(1);
+  expect_place(s.joint(source).pose().position, place);
+  EXPECT_EQ(s.number(source.id(), "mean_speed"), 0);
 }
 
 TEST(Mocap, APlayerFollowsItsFile) {

@@ -212,6 +212,16 @@ TEST(Routes, AWaitingRouteStartsWhenItsTargetExists) {
   EXPECT_NE(route.problem().find("there is no 'robot' in /physics/body"), std::string::npos) << route.problem();
 }
 
+TEST(Routes, ReportsTheProblemOfItsPresentAddresses) {
+  RouteFixture r;
+  Route& route = r.route("x/friction", "b/linear_damping");
+  r.ticks(1);
+  EXPECT_NE(route.problem().find("there is no 'x'"), std::string::npos) << route.problem();
+  ASSERT_TRUE(r.routes().connect(route, r.at("a/friction"), r.at("y/linear_damping")).ok());
+  r.ticks(1);
+  EXPECT_NE(route.problem().find("there is no 'y'"), std::string::npos) << route.problem();
+}
+
 TEST(Routes, ReportsUnsuitableEnds) {
   RouteFixture r;
   const auto ends_with = [](const std::string& text, const std::string& end) {

@@ -16,7 +16,7 @@ namespace limber::app {
 
 class Evaluator {
  public:
-  /// Runs the scene's file once to read what it declares; the error is that of the scene.
+  /// Runs the scene's file once to read its parameters and results. Fails with the scene's error if its script fails.
   Result<experiments::SceneInfo> set_up(experiments::WorkerSetup setup);
   /// Simulates. Requires a successful set_up(). The state hash is that of `limber play` with the same values.
   experiments::Outcome evaluate(const experiments::Evaluation& evaluation);

@@ -47,7 +47,7 @@ std::optional<ExperimentFault> Experiment::open() {
   experiments::Dispatcher::Options options;
   options.time_limit = options_.time_limit;
   options.canceled = [this] { return canceled(); };
-  options.on_restart = [this](std::size_t) {
+  options.on_restart = [this] {
     if (++restarts_ == 1) print_notice("a simulation ended unexpectedly; it is restarted (reported once)");
   };
   dispatcher_ = std::make_unique<experiments::Dispatcher>(*workers_, std::move(options));

@@ -112,7 +112,9 @@ Result<void> Sweep::open_table() {
     table_.write_to([](std::string_view text) { return write_result(text); }, columns());
     return {};
   }
-  if (!command_.common.resume) return table_.create(out, columns(), command_.common.overwrite);
+  if (!command_.common.resume)
+    return table_.create(out, columns(), command_.common.overwrite,
+                         "continue it with --resume, overwrite it with --overwrite, or choose another name");
   const Result<std::vector<std::vector<std::string>>> rows = table_.resume(out, columns());
   if (!rows) return Error{rows.error()};
   return check_rows(*rows);
@@ -193,6 +195,9 @@ int Sweep::run() {
         return evaluation(next++);
       },
       [&](const Evaluation& done, const Outcome& outcome) { return commit(done, outcome); });
+  if (!ran && table_.failed())
+    return fail(kMachineError,
+                fmt::format("{}; the rows before it are kept: free disk space and use --resume", ran.error()));
   if (!ran) return fail(kMachineError, ran.error());
   if (const Result<void> finished = table_.finish(); !finished) return fail(kMachineError, finished.error());
   return report(*ran == experiments::Dispatcher::End::canceled);

@@ -98,10 +98,8 @@ Result<void> RunFile::open(engine::Engine& engine) {
   if (columns_.empty()) return {};
   std::vector<std::string> names = {"tick", "time"};
   names.insert(names.end(), columns_.begin(), columns_.end());
-  if (Result<void> created = table_.create(rows_path_, std::move(names), false); !created)
-    return Error{created.error().find("already exists") == std::string::npos
-                     ? created.error()
-                     : fmt::format("--out {}: the file exists already; choose another name", printable(rows_path_))};
+  if (Result<void> created = table_.create(rows_path_, std::move(names), false, "choose another name"); !created)
+    return Error{fmt::format("--out: {}", created.error())};
   pending_.reserve(kCapacity);
   block_.reserve(kCapacity);
   thread_ = std::thread([this] { write_rows(); });

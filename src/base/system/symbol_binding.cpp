@@ -1,11 +1,10 @@
-// Symbol binding for ELF: rewrites the relocated words of a library. The words may be in pages that the dynamic linker
-// has made read-only (RELRO), which are writable meanwhile.
+// Symbol binding for ELF: rewrites the relocated words of a library. Pages that the dynamic linker has made read-only
+// (RELRO) are made writable while a word is written.
 #include "base/system/symbol_binding.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <vector>
 
 #include "base/system/virtual_memory.h"
 

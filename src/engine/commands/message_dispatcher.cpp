@@ -29,7 +29,7 @@ std::array<const PropertyTable*, 6> legacy_classes() {
           &sim::Motor::table(), &sim::Camera::table(), &sim::Shape::table()};
 }
 
-// Paths of objects: an unknown one is explained by the objects that exist.
+// The error for an unknown path that begins with one of these names the objects that exist.
 constexpr std::string_view kObjectPaths[] = {"/physics/body/", "/physics/group/", "/physics/mocap/", "/physics/route/",
                                              "/lighting/fixture/"};
 

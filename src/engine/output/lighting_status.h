@@ -1,4 +1,4 @@
-// LightingStatus: what the output to lights does, for display. [any]
+// LightingStatus: the state of the lighting output, for display. [any]
 #pragma once
 
 #include <atomic>

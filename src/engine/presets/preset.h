@@ -102,6 +102,8 @@ struct PresetSelection {
 
 /// A route in a preset. Its settings are values, like those of all nodes.
 struct PresetRoute {
+  static constexpr std::size_t kMax = 4096;  ///< Per preset, as many as a world has.
+
   std::string name;
   std::string from, to;
   bool operator==(const PresetRoute&) const = default;
@@ -136,7 +138,7 @@ class PresetBuilder {
   /// Adds a node with its properties, if there are any, and their values. `path` must begin with /. False if the node
   /// has properties already.
   bool add(std::string_view path, PresetLayout layout, const std::vector<double>& values);
-  /// Adds a route. False if its name or an address is not valid, or the name is in use.
+  /// Adds a route. False if its name or an address is not valid, the name is in use, or there are too many.
   bool add_route(PresetRoute route);
   /// Returns the preset. `shared`: schema of another preset, which is shared if it is equal; or null.
   std::shared_ptr<const Preset> finish(std::string name, PresetSelection selection,

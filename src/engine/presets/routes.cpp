@@ -15,11 +15,13 @@ constexpr const char* kGroup = "/physics/route";
 
 void restore(sim::RouteList& routes, const Preset& preset) {
   for (const PresetRoute& wanted : preset.routes) {
+    Result<void> done;
     if (sim::Route* const known = routes.find(wanted.name)) {
-      (void)routes.connect(*known, wanted.from, wanted.to);
+      done = routes.connect(*known, wanted.from, wanted.to);
     } else if (const Result<sim::Route*> added = routes.add(wanted.name, wanted.from, wanted.to); !added) {
-      log_warning("preset '{}': {}", preset.name, added.error());
+      done = Error{added.error()};
     }
+    if (!done) log_warning("preset '{}': {}", preset.name, done.error());
   }
 }
 

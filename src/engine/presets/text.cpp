@@ -295,8 +295,9 @@ class PresetParser : public Json::json_sax_t {
 
   void end_route() {
     if (route_.size() == kRouteTexts && builder_.add_route({route_[0], route_[1], route_[2]})) return;
-    problem(fmt::format("preset '{}': a route must be a list of its name and two addresses, and its name unique",
-                        printable(name_)));
+    problem(
+        fmt::format("preset '{}': a route must be a list of a unique name and two addresses, and there are at most {}",
+                    printable(name_), PresetRoute::kMax));
   }
 
   void report_unexpected(const Json& v) {

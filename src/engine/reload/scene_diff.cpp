@@ -280,11 +280,9 @@ bool SceneDiff::empty() const {
   const bool same_objects =
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
   const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
-  const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups, gears.removed,
-                                     tendons.removed, mocap.removed, routes.removed);
-  return same_values && same_objects && none_removed && !order_changed && all_empty(groups) && all_empty(gears.list) &&
-         all_empty(tendons.list) && fixtures.empty() && all_empty(mocap.sources) && all_empty(routes.list) &&
-         std::ranges::all_of(behaviors, all_empty);
+  const bool none_removed = all_none(removed_shapes, removed_bodies, removed_behaviors, removed_groups);
+  return same_values && same_objects && none_removed && !order_changed && all_empty(groups) &&
+         all_none(gears, tendons, fixtures, mocap, routes) && std::ranges::all_of(behaviors, all_empty);
 }
 
 std::uint64_t changed_mask(const SpecValues& before, const SpecValues& now) {
@@ -348,75 +346,52 @@ void compare_behaviors(const SceneSpec& before, const SceneSpec& now, SceneDiff&
   out.order_changed = before.behavior_order != now.behavior_order;
 }
 
-void compare_gears(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
-  const auto joints = [](const GearDescription& gear) {
-    return std::tie(gear.body_a, gear.joint_a, gear.body_b, gear.joint_b);
+template <class Description>
+std::string key_of(const Description& object) {
+  return object.name;
+}
+std::pair<std::string, std::string> key_of(const TendonDescription& tendon) { return {tendon.body, tendon.name}; }
+
+// Compares the objects of a class. `same_build` compares the parts of two descriptions that can't be set.
+template <class Description, class Key, class SameBuild>
+void compare_objects(const std::vector<Description>& before, const std::vector<Description>& now, ObjectDiffs<Key>& out,
+                     SameBuild same_build) {
+  const auto find = [](const std::vector<Description>& list, const Key& key) {
+    const auto found = std::ranges::find_if(list, [&](const Description& each) { return key_of(each) == key; });
+    return found == list.end() ? nullptr : &*found;
   };
-  for (const GearDescription& gear : now.gears) {
-    const GearDescription* const old_gear = find_named(before.gears, gear.name);
-    const bool same_joints = old_gear != nullptr && joints(*old_gear) == joints(gear);
-    out.gears.list.push_back({old_gear != nullptr, same_joints,
-                              mask_to_set(old_gear == nullptr ? nullptr : &old_gear->values, gear.values)});
+  for (const Description& object : now) {
+    const Description* const old_object = find(before, key_of(object));
+    if (old_object == nullptr) {
+      out.list.push_back({false, false, mask_to_set(nullptr, object.values)});
+    } else {
+      out.list.push_back({true, same_build(*old_object, object), mask_to_set(&old_object->values, object.values)});
+    }
   }
-  for (const GearDescription& old_gear : before.gears) {
-    if (find_named(now.gears, old_gear.name) == nullptr) out.gears.removed.push_back(old_gear.name);
-  }
-}
-
-void compare_mocap(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
-  for (const MocapDescription& source : now.mocap) {
-    const MocapDescription* const old_source = find_named(before.mocap, source.name);
-    const bool same_setup = old_source != nullptr && *old_source->setup == *source.setup;
-    out.mocap.sources.push_back({old_source != nullptr, same_setup,
-                                 old_source != nullptr && old_source->joints == source.joints,
-                                 mask_to_set(old_source == nullptr ? nullptr : &old_source->values, source.values)});
-  }
-  for (const MocapDescription& old_source : before.mocap) {
-    if (find_named(now.mocap, old_source.name) == nullptr) out.mocap.removed.push_back(old_source.name);
+  for (const Description& old_object : before) {
+    const Key key = key_of(old_object);
+    if (find(now, key) == nullptr) out.removed.push_back(key);
   }
 }
 
-const TendonDescription* find_tendon(const SceneSpec& spec, const TendonDescription& wanted) {
-  const auto found = std::ranges::find_if(spec.tendons, [&](const TendonDescription& tendon) {
-    return tendon.body == wanted.body && tendon.name == wanted.name;
+void compare_objects(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
+  using Gear = GearDescription;
+  using Tendon = TendonDescription;
+  using Fixture = FixtureDescription;
+  using Mocap = MocapDescription;
+  using Route = RouteDescription;
+  compare_objects(before.gears, now.gears, out.gears, [](const Gear& a, const Gear& b) {
+    return std::tie(a.body_a, a.joint_a, a.body_b, a.joint_b) == std::tie(b.body_a, b.joint_a, b.body_b, b.joint_b);
   });
-  return found == spec.tendons.end() ? nullptr : &*found;
-}
-
-void compare_tendons(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
-  for (const TendonDescription& tendon : now.tendons) {
-    const TendonDescription* const old_tendon = find_tendon(before, tendon);
-    out.tendons.list.push_back({old_tendon != nullptr, old_tendon != nullptr && old_tendon->points == tendon.points,
-                                mask_to_set(old_tendon == nullptr ? nullptr : &old_tendon->values, tendon.values)});
-  }
-  for (const TendonDescription& old_tendon : before.tendons) {
-    if (find_tendon(now, old_tendon) == nullptr) out.tendons.removed.emplace_back(old_tendon.body, old_tendon.name);
-  }
-}
-
-void compare_fixtures(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
-  for (const FixtureDescription& fixture : now.fixtures) {
-    const FixtureDescription* const old_one = find_named(before.fixtures, fixture.name);
-    const bool same_build =
-        old_one != nullptr && *old_one->profile == *fixture.profile && old_one->targets == fixture.targets;
-    out.fixtures.list.push_back(
-        {old_one != nullptr, same_build, mask_to_set(old_one == nullptr ? nullptr : &old_one->values, fixture.values)});
-  }
-  for (const FixtureDescription& old_one : before.fixtures) {
-    if (find_named(now.fixtures, old_one.name) == nullptr) out.fixtures.removed.push_back(old_one.name);
-  }
-}
-
-void compare_routes(const SceneSpec& before, const SceneSpec& now, SceneDiff& out) {
-  for (const RouteDescription& route : now.routes) {
-    const RouteDescription* const old_route = find_named(before.routes, route.name);
-    out.routes.list.push_back({old_route != nullptr,
-                               old_route != nullptr && old_route->from == route.from && old_route->to == route.to,
-                               mask_to_set(old_route == nullptr ? nullptr : &old_route->values, route.values)});
-  }
-  for (const RouteDescription& old_route : before.routes) {
-    if (find_named(now.routes, old_route.name) == nullptr) out.routes.removed.push_back(old_route.name);
-  }
+  compare_objects(before.tendons, now.tendons, out.tendons,
+                  [](const Tendon& a, const Tendon& b) { return a.points == b.points; });
+  compare_objects(before.fixtures, now.fixtures, out.fixtures, [](const Fixture& a, const Fixture& b) {
+    return *a.profile == *b.profile && a.targets == b.targets;
+  });
+  compare_objects(before.mocap, now.mocap, out.mocap,
+                  [](const Mocap& a, const Mocap& b) { return *a.setup == *b.setup && a.joints == b.joints; });
+  compare_objects(before.routes, now.routes, out.routes,
+                  [](const Route& a, const Route& b) { return a.from == b.from && a.to == b.to; });
 }
 
 }  // namespace
@@ -445,11 +420,7 @@ SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
     diff.old_index = out.old_body_indices[i];
     if (!diff.empty()) out.bodies.push_back(std::move(diff));
   }
-  compare_gears(before, now, out);
-  compare_tendons(before, now, out);
-  compare_fixtures(before, now, out);
-  compare_mocap(before, now, out);
-  compare_routes(before, now, out);
+  compare_objects(before, now, out);
   compare_behaviors(before, now, out);
   return out;
 }

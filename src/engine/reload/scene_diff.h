@@ -46,79 +46,23 @@ struct BehaviorDiff {
   bool empty() const { return in_old_spec && !rebuild && changed == 0; }
 };
 
-/// Changes of a gear. A gear between other joints is rebuilt.
-struct GearDiff {
+/// Changes of a gear, tendon, fixture, source of motion capture or route.
+struct ObjectDiff {
   bool in_old_spec = false;   ///< It is in the old spec.
-  bool same_joints = true;    ///< It connects the same joints.
-  std::uint64_t changed = 0;  ///< Properties to set.
-
-  bool empty() const { return in_old_spec && same_joints && changed == 0; }
-};
-
-/// Changes of a tendon. One through other points is rebuilt.
-struct TendonDiff {
-  bool in_old_spec = false;   ///< It is in the old spec.
-  bool same_points = true;    ///< It goes through the same points.
-  std::uint64_t changed = 0;  ///< Properties to set.
-
-  bool empty() const { return in_old_spec && same_points && changed == 0; }
-};
-
-/// Changes of a fixture. One with another profile or other targets is rebuilt.
-struct FixtureDiff {
-  bool in_old_spec = false;   ///< It is in the old spec.
-  bool same_build = true;     ///< It has the same profile and targets.
+  bool same_build = true;     ///< The parts that can't be set are the same: joints, points, setup, addresses.
   std::uint64_t changed = 0;  ///< Properties to set.
 
   bool empty() const { return in_old_spec && same_build && changed == 0; }
 };
 
-struct FixtureDiffs {
-  std::vector<FixtureDiff> list;     ///< For each new fixture.
-  std::vector<std::string> removed;  ///< Removed fixtures.
+template <class Key>
+struct ObjectDiffs {
+  std::vector<ObjectDiff> list;  ///< For each object of the new spec.
+  std::vector<Key> removed;
 
   bool empty() const {
-    return removed.empty() && std::ranges::all_of(list, [](const FixtureDiff& each) { return each.empty(); });
+    return removed.empty() && std::ranges::all_of(list, [](const ObjectDiff& each) { return each.empty(); });
   }
-};
-
-/// Changes of a source of motion capture. One with another setup is made again.
-struct MocapDiff {
-  bool in_old_spec = false;   ///< It is in the old spec.
-  bool same_setup = true;     ///< It has the same file or messages, axes, joints and bones.
-  bool same_joints = true;    ///< The script uses the same joints.
-  std::uint64_t changed = 0;  ///< Properties to set.
-
-  bool empty() const { return in_old_spec && same_setup && same_joints && changed == 0; }
-};
-struct MocapDiffs {
-  std::vector<MocapDiff> sources;    ///< For each new source.
-  std::vector<std::string> removed;  ///< Names of removed ones.
-};
-
-struct GearDiffs {
-  std::vector<GearDiff> list;        ///< For each new gear.
-  std::vector<std::string> removed;  ///< Removed gears.
-};
-
-struct TendonDiffs {
-  std::vector<TendonDiff> list;  ///< For each new tendon.
-  /// Removed tendons, by the names of their bodies and their own.
-  std::vector<std::pair<std::string, std::string>> removed;
-};
-
-/// Changes of a route.
-struct RouteDiff {
-  bool in_old_spec = false;   ///< It is in the old spec.
-  bool same_ends = true;      ///< It has the same addresses.
-  std::uint64_t changed = 0;  ///< Properties to set.
-
-  bool empty() const { return in_old_spec && same_ends && changed == 0; }
-};
-
-struct RouteDiffs {
-  std::vector<RouteDiff> list;       ///< For each new route.
-  std::vector<std::string> removed;  ///< Names.
 };
 
 struct SceneDiff {
@@ -137,11 +81,11 @@ struct SceneDiff {
   /// Removed behaviors, by body (index in the new spec) and name.
   std::vector<std::pair<std::size_t, std::string>> removed_behaviors;
   std::vector<std::string> removed_groups;  ///< Removed groups.
-  GearDiffs gears;
-  TendonDiffs tendons;
-  FixtureDiffs fixtures;
-  MocapDiffs mocap;
-  RouteDiffs routes;
+  ObjectDiffs<std::string> gears;
+  ObjectDiffs<std::pair<std::string, std::string>> tendons;  ///< By the names of their bodies and their own.
+  ObjectDiffs<std::string> fixtures;
+  ObjectDiffs<std::string> mocap;
+  ObjectDiffs<std::string> routes;
   bool order_changed = false;  ///< The order of the behaviors differs.
 
   bool empty() const;

@@ -212,8 +212,7 @@ class PatchApplier {
         live = *added;
         set_properties(source.id(), live->id(), described_mask(sim::Gear::table()));
       } else {
-        const GearDiff& diff = patch_.diff.gears.list[i];
-        set_properties(source.id(), live->id(), diff.changed);
+        set_properties(source.id(), live->id(), patch_.diff.gears.list[i].changed);
       }
       order.push_back(live);
     }
@@ -299,7 +298,7 @@ class PatchApplier {
       const MocapDescription& now = patch_.now.mocap[i];
       const NodeId source = patch_.candidate.sensing().mocap().list()[i]->id();
       sim::MocapSource* live = sources.find(now.name);
-      std::uint64_t changed = patch_.diff.mocap.sources[i].changed;
+      std::uint64_t changed = patch_.diff.mocap.list[i].changed;
       if (live == nullptr) {
         const Result<sim::MocapSource*> added = sources.add(now.name, now.setup);
         LIMBER_CHECK(added.ok());
@@ -324,7 +323,7 @@ class PatchApplier {
     for (std::size_t i = 0; i < patch_.now.routes.size(); i++) {
       const RouteDescription& now = patch_.now.routes[i];
       const NodeId source = patch_.candidate.behaviors().routes().list()[i]->id();
-      const RouteDiff& diff = patch_.diff.routes.list[i];
+      const ObjectDiff& diff = patch_.diff.routes.list[i];
       sim::Route* live = routes.find(now.name);
       if (live == nullptr) {
         const Result<sim::Route*> added = routes.add(now.name, now.from, now.to);
@@ -335,7 +334,7 @@ class PatchApplier {
         live = *added;
         set_properties(source, live->id(), described_mask(sim::Route::table()));
       } else {
-        if (!diff.same_ends) (void)routes.connect(*live, now.from, now.to);
+        if (!diff.same_build) (void)routes.connect(*live, now.from, now.to);
         set_properties(source, live->id(), diff.changed);
       }
       order.push_back(live);

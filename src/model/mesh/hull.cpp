@@ -135,7 +135,7 @@ class Quickhull {
   std::vector<int> pending_;
 };
 
-// True if no point is outside of the planes of the faces; of large hulls, compares some faces only.
+// True if no point is outside of the planes of the faces. Of a large hull, only every n-th face is compared.
 bool contains_all(const Hull& hull, std::span<const Vec3> points, double tolerance) {
   constexpr std::size_t kMaxComparisons = 20'000'000;
   const std::vector<FacePlane> planes = planes_of(hull);
@@ -213,8 +213,9 @@ Hull convex_hull(std::span<const Vec3> points) {
 Hull checked_convex_hull(std::span<const Vec3> points) {
   Hull hull = convex_hull(points);
   if (points.empty()) return hull;
-  const double size = extent_of(points).size;
-  const double tolerance = 1e-5 * size + tolerance_for(extent_of(points));
+  const Extent extent = extent_of(points);
+  const double size = extent.size;
+  const double tolerance = 1e-5 * size + tolerance_for(extent);
   std::uint64_t random = 0;
   for (double offset = 1e-6; offset <= 1e-3 && !contains_all(hull, points, tolerance + offset * size); offset *= 10) {
     std::vector<Vec3> displaced(points.begin(), points.end());

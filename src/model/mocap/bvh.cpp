@@ -33,18 +33,4 @@ Pose BvhClip::local_pose_at(std::size_t joint, double time) const {
   return {from.position + (to.position - from.position) * amount, slerp(from.rotation, to.rotation, amount)};
 }
 
-double BvhClip::rest_extent() const {
-  std::vector<Vec3> places;
-  Vec3 low(0);
-  Vec3 high(0);
-  for (const BvhJoint& joint : joints) {
-    const Vec3 place = joint.parent < 0 ? Vec3(0) : places[static_cast<std::size_t>(joint.parent)] + joint.offset;
-    places.push_back(place);
-    low = glm::min(low, place);
-    high = glm::max(high, place);
-  }
-  const Vec3 size = high - low;
-  return std::max({size.x, size.y, size.z});
-}
-
 }  // namespace limber::model

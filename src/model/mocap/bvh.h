@@ -48,8 +48,6 @@ struct BvhClip {
   Pose local_pose(std::size_t joint, std::size_t frame) const;
   /// The same between two frames: linear and along the shorter arc. `time`: s, clamped to 0 .. duration().
   Pose local_pose_at(std::size_t joint, double time) const;
-  /// Height of the skeleton in its rest pose along the longest axis, in units of the file.
-  double rest_extent() const;
 };
 
 /// Reads a BVH file's text. Errors name the file, the line and the problem.

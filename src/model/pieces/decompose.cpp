@@ -1,5 +1,6 @@
-// The mesh's box is halved into cells; the hull of a cell is that of the clipped surface and of the corners that are
-// inside of the mesh. How much hollow a hull fills is measured at samples of the surface, along their normals.
+// The bounding box of the mesh is cut into cells. The hull of a cell contains the surface in it, and the cell's corners
+// that are inside of the mesh. The depth of the hollows that a hull fills is measured at samples of the surface, along
+// their normals.
 #include "model/pieces/decompose.h"
 
 #include <algorithm>
@@ -28,13 +29,13 @@ constexpr int kMaxOutline = 100;                 // vertices of a cell's hull th
 constexpr std::size_t kComparedPolygons = 1000;  // of a cell, to compare candidates
 constexpr std::size_t kMaxGrowth = 8;            // of the number of polygons by cuts
 constexpr std::size_t kMinPolygons = 20'000;
-constexpr double kImbalance = 0.1;   // cost of a plane at the end of a cell, relative to filling as much as before
-constexpr double kMinHollow = 1e-3;  // that is worth a cut, relative to the volume of the whole hull
+constexpr double kImbalance = 0.1;         // cost of a plane at the end of a cell, where 1 is the hollow before the cut
+constexpr double kMinHollow = 1e-3;        // smaller hollows are not cut; relative to the volume of the whole hull
 constexpr double kMaxJoinedGrowth = 1.02;  // volume of joined hulls, relative to the sum
 
 using CornerFlags = std::array<bool, 8>;  // bits 0, 1, 2 of the index: high x, y, z
 
-// The length of the hollow in front of a sample that a hull fills.
+// Returns the depth to which a hull fills the hollow in front of a sample.
 double filled(const SurfaceSample& sample, const std::vector<FacePlane>& planes) {
   double length = sample.free;
   for (const FacePlane& plane : planes) {
@@ -45,6 +46,7 @@ double filled(const SurfaceSample& sample, const std::vector<FacePlane>& planes)
   return std::max(0.0, length);
 }
 
+// Filled depths at samples.
 struct Fill {
   double sum = 0;
   double depth = 0;  // the largest
@@ -62,10 +64,10 @@ struct Cell {
   std::vector<Polygon> polygons;
   std::vector<Polygon> caps;  // close the surface where it was cut; they may overlap, with opposite signs
   std::vector<std::size_t> samples;
-  std::vector<double> lengths;  // filled at each sample
+  std::vector<double> lengths;  // filled depth at each sample
   Hull hull;
   double hull_volume = 0;
-  double hollow = 0;  // the volume of the hull that isn't in the mesh
+  double hollow = 0;  // volume of the hull outside of the mesh
   Fill fill;
   bool indivisible = false;  // no plane has surface on both sides
 
@@ -96,8 +98,6 @@ double area_of_hull(const Hull& hull) {
   }
   return sum / 2;
 }
-
-double volume_of_hull(const Hull& hull) { return unit_inertial_of(hull.vertices, hull.triangles).mass; }
 
 class Decomposer {
  public:
@@ -137,7 +137,7 @@ class Decomposer {
   double depth_tolerance() const { return limits_.tolerance * size_; }
   double epsilon() const { return 1e-7 * size_; }
 
-  // of all cells, which bounds the memory: each cut through a polygon makes two of it
+  // The number of polygons of all cells. It is limited, because each cut through a polygon makes two of it.
   std::size_t polygons() const {
     std::size_t sum = 0;
     for (const Cell& cell : cells_) sum += cell.polygons.size() + cell.caps.size();
@@ -156,13 +156,13 @@ class Decomposer {
     return cell;
   }
 
-  // computes the hull of a cell, and what it fills
+  // Computes the hull of a cell, its hollow and its filled depths.
   void measure(Cell& cell) {
     std::vector<Vec3> points = cell.corners_inside();
     for (const Polygon& polygon : cell.polygons)
       points.insert(points.end(), polygon.corners.begin(), polygon.corners.end());
     cell.hull = checked_convex_hull(points);
-    cell.hull_volume = volume_of_hull(cell.hull);
+    cell.hull_volume = volume_of(cell.hull);
     const double solid = enclosed_volume(cell.polygons, cell.low) + enclosed_volume(cell.caps, cell.low);
     cell.hollow = std::max(0.0, cell.hull_volume - solid);
     measure_fill(cell);
@@ -182,7 +182,7 @@ class Decomposer {
            cell.hollow > std::max(limits_.hollow * cell.hull_volume, kMinHollow * volume_);
   }
 
-  // splits the cell that fills the most; false if none can be improved
+  // Splits the cell with the largest hollow; false if no cell needs a cut.
   bool split_worst() {
     Cell* worst = nullptr;
     for (Cell& cell : cells_) {
@@ -206,7 +206,7 @@ class Decomposer {
     const double height = sample.point[plane.axis] - plane.position;
     return std::abs(height) > epsilon() ? height < 0 : sample.normal[plane.axis] >= 0;
   }
-  // whether the corners of the cut through a cell are inside of the mesh, by index without the bit of the axis
+  // Returns which corners of the cut through a cell are inside of the mesh, by their index with the axis's bit cleared.
   CornerFlags corners_of_cut(const Cell& cell, const AxisPlane& plane) {
     CornerFlags out{};
     for (std::size_t i = 0; i < 8; ++i) {
@@ -218,7 +218,7 @@ class Decomposer {
     return out;
   }
 
-  // the boxes of both sides of a cut
+  // Returns the cells below and above a cut, with their corners and samples only.
   std::array<Cell, 2> halves(const Cell& cell, const AxisPlane& plane) {
     std::array<Cell, 2> out;
     for (Cell& half : out) half.low = cell.low, half.high = cell.high, half.inside = cell.inside;
@@ -246,7 +246,7 @@ class Decomposer {
     return out;
   }
 
-  // planes at even distances, and at the walls in front of the longest filled hollows
+  // Returns planes at even distances, and at the walls of the deepest filled hollows.
   std::vector<AxisPlane> candidates(const Cell& cell) const {
     std::vector<AxisPlane> out;
     for (int axis = 0; axis < 3; ++axis) {
@@ -267,7 +267,7 @@ class Decomposer {
     return out;
   }
 
-  // the points of both sides of a cut, those of some of the polygons if there are many
+  // Returns points of the surface on both sides of a cut; of many polygons, only every n-th is used.
   std::array<std::vector<Vec3>, 2> side_points(const Cell& cell, std::span<const Vec3> outline,
                                                const AxisPlane& plane) const {
     std::array<std::vector<Polygon>, 2> parts;
@@ -286,8 +286,9 @@ class Decomposer {
     return out;
   }
 
-  // Estimates what the hulls of both sides of a cut fill, relative to the hull of the cell; empty: one has no surface.
-  std::optional<double> filled_after(const Cell& cell, std::span<const Vec3> outline, const AxisPlane& plane) {
+  // Estimates the cost of a cut: volume and depth of the hollows that the hulls of both sides fill, relative to the
+  // cell, and their area. Empty if one side has no surface.
+  std::optional<double> cost_of_cut(const Cell& cell, std::span<const Vec3> outline, const AxisPlane& plane) {
     std::array<std::vector<Vec3>, 2> points = side_points(cell, outline, plane);
     const std::array<Cell, 2> sides = halves(cell, plane);
     double sum = 0, volume = 0, area = 0;
@@ -297,12 +298,12 @@ class Decomposer {
       const Hull hull = convex_hull(points[side]);
       const std::vector<FacePlane> planes = planes_of(hull);
       for (const std::size_t i : sides[side].samples) sum += filled(samples_[i], planes);
-      volume += volume_of_hull(hull);
+      volume += volume_of(hull);
       area += area_of_hull(hull);
     }
     const double hollow = cell.hollow > 0 ? (volume - cell.hull_volume) / cell.hollow + 1 : 0;
     const double filled = cell.fill.sum > 0 ? sum / cell.fill.sum : 0;
-    // the area prefers compact sides to slices, where neither cut gains: a ring is cut across, not along
+    // if no cut reduces the hollow, the area prefers compact sides to slices: a ring is cut across, not along
     return hollow + filled + area / area_of_hull(cell.hull);
   }
 
@@ -311,11 +312,11 @@ class Decomposer {
     double least = std::numeric_limits<double>::infinity();
     const std::vector<Vec3> outline = reduced_hull(cell.hull, {16, kMaxOutline, 0}).vertices;
     for (const AxisPlane& plane : candidates(cell)) {
-      const std::optional<double> filled = filled_after(cell, outline, plane);
-      if (!filled) continue;
+      const std::optional<double> estimate = cost_of_cut(cell, outline, plane);
+      if (!estimate) continue;
       const double low = cell.low[plane.axis], high = cell.high[plane.axis];
       const double imbalance = std::abs(low + high - 2 * plane.position) / (high - low);
-      const double cost = *filled + kImbalance * imbalance;
+      const double cost = *estimate + kImbalance * imbalance;
       if (cost >= least) continue;
       least = cost;
       best = plane;
@@ -323,7 +324,7 @@ class Decomposer {
     return best;
   }
 
-  // joins cells whose common hull fills nothing more
+  // Joins cells whose common hull is hardly larger than their hulls, and fills no deeper hollow.
   void join_cells() {
     for (bool joined = true; joined;) {
       joined = false;
@@ -347,7 +348,7 @@ class Decomposer {
     std::vector<Vec3> points = a.hull.vertices;
     points.insert(points.end(), b.hull.vertices.begin(), b.hull.vertices.end());
     both.hull = checked_convex_hull(points);
-    both.hull_volume = volume_of_hull(both.hull);
+    both.hull_volume = volume_of(both.hull);
     if (both.hull_volume > kMaxJoinedGrowth * (a.hull_volume + b.hull_volume)) return {};
     both.hollow = std::max(0.0, both.hull_volume - a.hull_volume - b.hull_volume + a.hollow + b.hollow);
     both.samples = a.samples;

@@ -24,20 +24,20 @@ struct DecompositionLimits {
 
 struct Decomposition {
   std::vector<Hull> hulls;  ///< One: the mesh is convex within the tolerance.
-  /// The largest distance along the normal of a sampled point of the surface that a hull fills in front of it, meters.
+  /// Depth of the deepest hollow that a hull fills, measured along the normals of sampled points, meters.
   double filled_depth = 0;
 };
 
-/// Decomposes a closed surface. Repeatedly cuts the cell whose hull has the largest volume outside of the mesh, at one
-/// of the planes orthogonal to an axis, chosen by what the hulls of both sides fill; then joins hulls that fill nothing
-/// together. The axes are those of the mesh's frame, or of its inertia (align_to_axes()). A cell is cut no further if
-/// it is within both limits, or there are `max_pieces`. The hulls contain the mesh. Depends on the triangles only, not
-/// on their order. [any]
+/// Decomposes a closed surface. Begins with the bounding box as the only cell, and repeatedly cuts the cell whose hull
+/// has the largest volume outside of the mesh. Of several planes orthogonal to an axis, it chooses the one after which
+/// the hulls fill the least. Stops when all cells are within both limits, or there are `max_pieces`; then joins cells
+/// whose common hull is hardly larger than the two. The axes are those of the mesh's frame, or of its inertia
+/// (align_to_axes()). The hulls contain the mesh. The result depends on the triangles, but not on their order. [any]
 Decomposition decompose(std::span<const Vec3> vertices, std::span<const unsigned> triangles,
                         const DecompositionLimits& limits = {});
 
-/// Returns a mesh with the pieces of its decomposition. A convex mesh, one whose objects are convex, and one that can't
-/// be decomposed because it is open or too large (which it reports), stays as it is. [any]
+/// Returns a mesh with the pieces of its decomposition. A convex mesh and one whose objects are convex keep their
+/// shapes. So does a mesh that is open or too large, which gets a problem (MeshModel::collision_problems). [any]
 std::shared_ptr<const MeshModel> decomposed(const std::shared_ptr<const MeshModel>& mesh);
 
 }  // namespace limber::model

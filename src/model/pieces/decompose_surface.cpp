@@ -1,4 +1,4 @@
-// Samples and crossings of a surface.
+// Samples, cuts and crossings of a surface.
 #include "model/pieces/decompose_surface.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct RayHit {
   bool enters;  // the ray enters the solid
 };
 
-// Where a line meets a triangle, by Möller and Trumbore; empty if it misses it.
+// Returns the intersection of a line and a triangle, by Möller and Trumbore; empty if there is none.
 std::optional<RayHit> hit_of(const Triangle& t, const Vec3& from, const Vec3& direction) {
   const Vec3 ab = t[1] - t[0], ac = t[2] - t[0];
   const Vec3 p = glm::cross(direction, ac);
@@ -195,7 +195,7 @@ bool InsideTest::contains(const Vec3& point, int axis) {
 
 InsideTest::Crossings InsideTest::crossings_along(const Vec3& point, int axis) const {
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  // beside the point, because cells have edges in common with the mesh
+  // displaced, because cells have edges in common with the mesh
   const double x = point[u] + 0.734e-7 * size_, y = point[v] + 0.417e-7 * size_;
   Crossings out;
   for (const Triangle& t : triangles_) {

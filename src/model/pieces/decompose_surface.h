@@ -1,4 +1,4 @@
-// The surface of a mesh for its decomposition: ordered triangles, samples, clipping, and which points are inside.
+// The surface of a mesh for its decomposition: ordered triangles, samples, clipping, and a test for points inside.
 // Internal to the module: only decompose*.cpp includes it.
 #pragma once
 
@@ -37,7 +37,7 @@ struct AxisPlane {
   double position = 0;
 };
 
-/// Clips convex polygons by planes orthogonal to the axes.
+/// A convex polygon.
 struct Polygon {
   std::vector<Vec3> corners;
   Vec3 normal;  ///< Outward; any length.
@@ -52,14 +52,14 @@ std::vector<Polygon> caps_of_cut(std::span<const Polygon> polygons, const AxisPl
 /// The volume between the polygons and `origin`; summed over a closed surface: its volume.
 double enclosed_volume(std::span<const Polygon> polygons, const Vec3& origin);
 
-/// Finds which points are inside of a closed surface, by the crossings of lines parallel to the axes.
+/// Tests whether points are inside of a closed surface, by the crossings of lines parallel to the axes.
 class InsideTest {
  public:
   /// `size`: largest extent of the surface.
   InsideTest(std::span<const Triangle> triangles, double size) : triangles_(triangles), size_(size) {}
 
-  /// True if a point is inside. Points within a millionth of the size of the surface may be reported either way. The
-  /// crossings of the line through it along `axis` are found once.
+  /// True if a point is inside. If it is nearer to the surface than a millionth of the size, the result may be wrong.
+  /// Caches the crossings of the line through the point along `axis`.
   bool contains(const Vec3& point, int axis);
 
  private:

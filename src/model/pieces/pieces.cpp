@@ -19,7 +19,7 @@ namespace limber::model {
 
 namespace {
 
-constexpr std::size_t kMaxObjects = 1000;  // hulls that are computed before those inside others are dropped
+constexpr std::size_t kMaxObjects = 1000;  // limits the time to find hulls that are inside others
 
 using Triangles = std::vector<unsigned>;
 
@@ -92,8 +92,6 @@ Hull hull_of(const MeshModel& mesh, const Triangles& triangles) {
   return convex_hull(points);
 }
 
-double volume_of(const Hull& hull) { return unit_inertial_of(hull.vertices, hull.triangles).mass; }
-
 // True if no vertex of a hull is outside of one of the planes.
 bool contains(const std::vector<FacePlane>& planes, const Hull& inner) {
   return std::all_of(planes.begin(), planes.end(), [&](const FacePlane& plane) {
@@ -111,7 +109,7 @@ void drop_contained(std::vector<Hull>& hulls) {
   for (const Hull& hull : hulls) volumes.push_back(volume_of(hull));
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return volumes[a] > volumes[b]; });
   std::vector<std::size_t> kept;
-  std::vector<std::vector<FacePlane>> planes;  // of those
+  std::vector<std::vector<FacePlane>> planes;  // of the kept hulls
   for (const std::size_t i : order) {
     if (std::any_of(planes.begin(), planes.end(), [&](const auto& outer) { return contains(outer, hulls[i]); }))
       continue;
@@ -141,6 +139,8 @@ void report_too_many(MeshModel& mesh, std::size_t count) {
 }
 
 }  // namespace
+
+double volume_of(const Hull& hull) { return unit_inertial_of(hull.vertices, hull.triangles).mass; }
 
 bool has_pieces(const ShapeModel& shape) {
   return shape.kind == ShapeKind::mesh && shape.surface == nullptr && shape.mesh != nullptr &&

@@ -14,6 +14,9 @@ namespace limber::model {
 /// Largest number of pieces of a mesh. A file with more objects collides as one hull, which is reported.
 inline constexpr std::size_t kMaxPieces = 64;
 
+/// Returns the volume of a hull. [any]
+double volume_of(const Hull& hull);
+
 /// True if a shape collides as the pieces of its mesh. [any]
 bool has_pieces(const ShapeModel& shape);
 /// Returns the convex shapes that a shape collides as, placed in the same frame: the pieces of a mesh that has some,

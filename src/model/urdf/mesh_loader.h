@@ -31,7 +31,7 @@ class MeshLoader {
   /// Replaces the concave mesh of a shape by one that collides as several convex pieces, if the file's limit of
   /// triangles allows it; otherwise reports that it collides as it is.
   void decompose(UrdfShape& shape, const std::string& owner);
-  /// Reports what a mesh lacks as a collision shape, once per file.
+  /// Reports the problems of a mesh as a collision shape (MeshModel::collision_problems), once per file.
   void report_collision(const UrdfShape& shape, const std::string& owner);
   /// Appends the mesh files, with their hashes and URIs, to the model's lists.
   void list_files(BodyModel& model) const;

@@ -48,7 +48,7 @@ class LightingOutput {
   void run();
   void send(Output& output, const system::Endpoint& to, const std::string& packet);
   void open(Output& output, std::int64_t now);
-  /// Sends what is due. Returns when to continue, ns.
+  /// Sends the packets that are due. Returns the time of the next call, ns.
   std::int64_t send_due(std::int64_t now);
 
   engine::EngineLink& link_;

@@ -100,7 +100,7 @@ Error not_loaded(std::string_view file) {
                   file)};
 }
 
-// Reports the colors and textures of a mesh file that are not drawn, and what it lacks as a collision shape.
+// Reports the colors and textures of a mesh file that are not drawn, and its defects as a collision shape.
 void report_problems(const std::string& path, const model::MeshModel& mesh) {
   for (const model::Problem& problem : mesh.collision_problems)
     log_warning("{}: {}. {}", printable(path), problem.text, problem.fix);

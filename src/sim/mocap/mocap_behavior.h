@@ -12,7 +12,7 @@ class World;
 
 /// The source of a number from 1, or null.
 const MocapSource* mocap_source(const World& world, double number);
-/// A joint that was seen, by the numbers of its source and itself, or null.
+/// A joint that has a place on stage, by the numbers of its source and itself, or null.
 const MocapJoint* mocap_joint(const World& world, double source, double joint);
 
 /// The turn of a joint relative to its parent about an axis of the parent (0 .. 2), rad, -π .. π: the twist of its

@@ -2,6 +2,7 @@
 #include "sim/mocap/mocap_features.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <unordered_map>

@@ -29,10 +29,10 @@ class MocapFeatureExtractor {
   /// Finds the pairs of left and right joints by their names: "left_hand" and "right_hand", "LeftHand", "l_hand",
   /// "hand.L". Call it when joints were added.
   void find_pairs(Joints joints);
-  /// `mean_jerk`: of the previous tick; `time_constant` of its smoothing, s.
+  /// `mean_jerk` and `previous_accelerations`: those of the previous tick.
   MocapFeatures extract(Joints joints, std::span<const Vec3> previous_accelerations, double mean_jerk, double dt) const;
 
-  static constexpr double kJerkTime = 0.1;  ///< Time constant of its smoothing, s.
+  static constexpr double kJerkTime = 0.1;  ///< Time constant of the smoothing of the jerk, s.
 
  private:
   double symmetry(Joints joints, const Vec3& center, double expansion) const;

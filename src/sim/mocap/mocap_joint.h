@@ -16,9 +16,8 @@ class MocapSource;
 
 /// Settings of a source for the motion of its joints in a tick.
 struct MocapMotion {
-  double time = 0;  ///< At the end of the tick, s.
-  double dt = 0;    ///< s
-  Pose stage;       ///< Where the source's origin is.
+  double dt = 0;  ///< s
+  Pose stage;     ///< Where the source's origin is.
   double scale = 1;
   double max_step = 0;  ///< Largest motion in the tick, m.
   double max_turn = 0;  ///< rad
@@ -54,6 +53,7 @@ class MocapJoint {
 
   NodeId id() const { return id_; }
   const std::string& name() const;
+  std::size_t index() const { return index_; }
   MocapSource& source() const { return source_; }
   /// Number in the list of the source; -1: none.
   int parent() const { return parent_; }
@@ -77,6 +77,8 @@ class MocapJoint {
   Pose raw_pose(const Pose* parent) const;
   /// Moves it towards a pose in the source's frame. `parent`: its nearest ancestor with a pose on stage, or null.
   void move(const Pose& raw, const MocapJoint* parent, const MocapMotion& motion);
+  /// Stops it where it is.
+  void stop() { state_.velocity = state_.acceleration = Vec3(0); }
   /// Publishes its readouts. `trust`: factor on its confidence.
   void publish(double time, double trust, bool on_floor);
 

@@ -31,7 +31,8 @@ class MocapList {
   void move_to_front(const std::vector<MocapSource*>& first);
   void clear();
 
-  /// Passes a message to the source that receives its address. Nothing: none does. Error: the arguments don't fit.
+  /// Passes a message to the source that receives its address; returns nothing if none does. Error: the arguments don't
+  /// fit.
   std::optional<Result<void>> accept(const Message& message);
   /// Moves all joints; call it before behaviors are stepped.
   void step(double dt);

@@ -103,7 +103,7 @@ Result<std::size_t> MocapMessage::count(std::span<const Arg> args) const {
   const bool single = has_joint_word_ || has_joint_segment_;
   if (single ? args.size() < width : args.empty() || args.size() % width != 0) {
     return Error{
-        fmt::format("takes {} {}arguments, got {}", width, single ? "" : "or a multiple of these ", args.size())};
+        fmt::format("takes {} {} arguments, got {}", single ? "at least" : "a multiple of", width, args.size())};
   }
   const std::size_t joints = single ? 1 : args.size() / width;
   for (std::size_t i = 0; i < joints * width; i++) {

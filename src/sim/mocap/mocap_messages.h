@@ -1,4 +1,4 @@
-// MocapMessages: decodes OSC messages by words that name their arguments: "x y z" is a position, "qw qx qy qz" a
+// MocapMessage: decodes OSC messages by words that name their arguments: "x y z" is a position, "qw qx qy qz" a
 // rotation, "lx ly lz" and "lqw lqx lqy lqz" those relative to the parent, "confidence" 0 .. 1, "-" an argument that is
 // skipped. A message without names has these values for each joint in turn; "joint" is the name of one joint, and
 // <joint> in the address stands for it. [any]

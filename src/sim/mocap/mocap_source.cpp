@@ -125,6 +125,7 @@ MocapSource::MocapSource(World& world, NodeId group, std::string name, std::shar
       if (find(joint) == nullptr) add_joint(joint);
     }
   }
+  declared_ = joints_.size();
   link_joints();
   if (is_player()) publish_start();
 }
@@ -221,13 +222,12 @@ void MocapSource::link_joints() {
 }
 
 MocapJoint* MocapSource::joint_for(const MocapSample& sample, std::string_view named) {
-  const std::string_view name = named.empty() ? sample.joint : named;
+  std::string_view name = named.empty() ? sample.joint : named;
+  std::string numbered;  // short enough not to allocate
   if (name.empty()) {
-    if (sample.index < joints_.size()) return joints_[sample.index].get();
-    if (sample.index >= kMaxJoints) return nullptr;
-    add_joint(fmt::format("joint_{}", sample.index + 1));
-    link_joints();
-    return joints_.back().get();
+    if (sample.index < declared_) return joints_[sample.index].get();
+    numbered = fmt::format("joint_{}", sample.index + 1);
+    name = numbered;
   }
   if (MocapJoint* const known = find(name)) return known;
   if (joints_.size() == kMaxJoints || name_error(name)) return nullptr;
@@ -265,6 +265,8 @@ void MocapSource::step(double dt) {
   if (setting(mocap_properties().active) != 0) {
     if (is_player()) play(dt);
     move_joints(dt);
+  } else {
+    for (const auto& joint : joints_) joint->stop();
   }
   report(time);
   publish_joints(time);
@@ -300,10 +302,8 @@ void MocapSource::publish_start() {
 }
 
 double MocapSource::bone_length(const MocapJoint& joint) const {
-  const auto found = std::ranges::find_if(joints_, [&](const auto& each) { return each.get() == &joint; });
-  const auto number = static_cast<std::size_t>(found - joints_.begin());
-  if (is_player() && number < setup_->clip->joints.size())
-    return glm::length(setup_->clip->local_pose(number, 0).position) * setup_->axes.unit;
+  if (is_player() && joint.index() < setup_->clip->joints.size())
+    return glm::length(setup_->clip->local_pose(joint.index(), 0).position) * setup_->axes.unit;
   const auto bone =
       std::ranges::find_if(setup_->bones, [&](const MocapBone& each) { return each.child == joint.name(); });
   return bone == setup_->bones.end() ? MocapBone::kDefaultLength : bone->length;
@@ -314,8 +314,7 @@ void MocapSource::move_joints(double dt) {
   const double* const settings = std::as_const(store()).persistent_block(id_);
   const Vec3 turn = vec3_at(settings + p.rotation->offset) * (kPi / 180);
   const Quat rotation = quat_axis({1, 0, 0}, turn.x) * quat_axis({0, 1, 0}, turn.y) * quat_axis({0, 0, 1}, turn.z);
-  const MocapMotion motion{world_.time() + dt,
-                           dt,
+  const MocapMotion motion{dt,
                            {vec3_at(settings + p.offset->offset), rotation},
                            setting(p.scale),
                            setting(p.max_speed) * dt,
@@ -335,7 +334,7 @@ void MocapSource::move_joints(double dt) {
     count++;
     joint.move(raw_[i], has_parent ? joints_[parent].get() : nullptr, motion);
   }
-  if (count > 0) follow_samples(center / static_cast<double>(count), motion.time);
+  if (count > 0) follow_samples(center / static_cast<double>(count), world_.time() + dt);
 }
 
 void MocapSource::follow_samples(const Vec3& center, double time) {

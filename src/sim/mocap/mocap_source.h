@@ -73,7 +73,7 @@ class MocapSource {
   void play(double dt);
   void publish_start();
   void move_joints(double dt);
-  double trust(double time) const;
+  double trust(double age) const;
   void publish_joints(double time);
   void publish_features(double dt);
   void report(double time);
@@ -86,6 +86,7 @@ class MocapSource {
   std::shared_ptr<const MocapSetup> setup_;
   std::vector<MocapMessage> messages_;
   std::vector<std::unique_ptr<MocapJoint>> joints_;
+  std::size_t declared_ = 0;        // number of joints of the setup, which come first
   std::vector<std::size_t> order_;  // of the joints, parents first
   MocapFeatureExtractor features_;
   std::vector<Pose> raw_;            // scratch: of the joints, in the source's frame

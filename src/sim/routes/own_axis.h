@@ -1,4 +1,4 @@
-// The own axis of vectors of joints and motors, for those who set or read a single number of them. [sim]
+// The own axis of a joint in its vectors and in those of its motor: the element that a single number stands for. [sim]
 #pragma once
 
 #include "properties/store.h"

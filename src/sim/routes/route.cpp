@@ -98,6 +98,7 @@ void Route::connect(std::string from, std::string to) {
   if (from == from_ && to == to_) return;
   from_ = std::move(from);
   to_ = std::move(to);
+  problem_.clear();
   links_outdated_ = true;
 }
 

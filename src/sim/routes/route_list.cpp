@@ -17,6 +17,12 @@ namespace {
 
 constexpr std::size_t kMaxRoutes = 4096;
 
+Result<void> check_ends(std::string_view name, std::string_view from, std::string_view to) {
+  const std::string subject = fmt::format("route '{}'", name);
+  if (const Result<void> valid = check_route_address(subject + ": from", from); !valid) return valid;
+  return check_route_address(subject + ": to", to);
+}
+
 double joined(RouteCombine combine, double before, double output) {
   if (combine == RouteCombine::sum) return before + output;
   return combine == RouteCombine::max ? std::max(before, output) : output;
@@ -29,9 +35,7 @@ RouteList::RouteList(Store& store, NodeId parent) : store_(store), routes_(store
 Result<Route*> RouteList::add(std::string name, std::string from, std::string to) {
   if (const Result<void> free = routes_.check_new_name("route", name); !free) return Error{free.error()};
   if (routes_.list().size() >= kMaxRoutes) return Error{fmt::format("there are {} routes, the most", kMaxRoutes)};
-  const std::string subject = fmt::format("route '{}'", name);
-  if (const Result<void> valid = check_route_address(subject + ": from", from); !valid) return Error{valid.error()};
-  if (const Result<void> valid = check_route_address(subject + ": to", to); !valid) return Error{valid.error()};
+  if (const Result<void> valid = check_ends(name, from, to); !valid) return Error{valid.error()};
   Route& route =
       routes_.add(std::make_unique<Route>(*this, routes_.group(), std::move(name), std::move(from), std::move(to)));
   if (transaction_ != nullptr) transaction_->record_added(routes_.objects());
@@ -40,9 +44,7 @@ Result<Route*> RouteList::add(std::string name, std::string from, std::string to
 }
 
 Result<void> RouteList::connect(Route& route, std::string from, std::string to) {
-  const std::string subject = fmt::format("route '{}'", route.name());
-  if (const Result<void> valid = check_route_address(subject + ": from", from); !valid) return valid;
-  if (const Result<void> valid = check_route_address(subject + ": to", to); !valid) return valid;
+  if (const Result<void> valid = check_ends(route.name(), from, to); !valid) return valid;
   route.connect(std::move(from), std::move(to));
   outdated_ = true;
   return {};

@@ -85,8 +85,8 @@ model::Inertial solid_inertial(const std::vector<model::PlacedShape>& shapes) {
   return model::combined(solids);
 }
 
-// Bullet rounds the edges of boxes by their margin, by default up to a tenth of the shortest half edge. Pieces of
-// meshes have edges as sharp as those of hulls, so that their common surface is that of the mesh.
+// Limits the margin of a box that is a piece of a mesh. Bullet rounds the edges of boxes by their margin, by default up
+// to a tenth of the shortest half edge; pieces need edges as sharp as those of hulls, so that their union is the mesh.
 void sharpen(btCollisionShape& shape) {
   if (shape.getShapeType() == BOX_SHAPE_PROXYTYPE) shape.setMargin(std::min(kMargin, shape.getMargin()));
 }

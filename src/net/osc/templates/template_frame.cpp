@@ -32,11 +32,21 @@ void append_u32(std::string& out, std::uint32_t value) {
   store_u32(out.data() + out.size() - 4, value);
 }
 
-// The property in a value such as "-position.y".
-std::string_view property_name(std::string_view value) {
-  if (value.starts_with('-')) value.remove_prefix(1);
-  return value.substr(0, value.find('.'));
-}
+// The parts of a value such as "-position.y".
+struct TemplateValue {
+  explicit TemplateValue(std::string_view value) : negative(value.starts_with('-')) {
+    if (negative) value.remove_prefix(1);
+    const std::size_t dot = value.find('.');
+    property = value.substr(0, dot);
+    if (dot != std::string_view::npos) component = value.substr(dot + 1);
+  }
+
+  bool negative;
+  std::string_view property;
+  std::optional<std::string_view> component;
+};
+
+bool is_text(std::string_view value) { return value.find('{') != std::string_view::npos; }
 
 // Index of a component's name, or none.
 std::optional<std::uint32_t> component_named(std::string_view name, std::uint32_t width) {
@@ -76,8 +86,8 @@ Result<std::vector<std::uint32_t>> TemplateFrame::objects_of(const StreamMessage
     if (ref->property != nullptr) return Error{fmt::format("'{}' is a property, not an object", wanted.objects)};
     return std::vector{ref->node};
   }
-  const auto first = std::ranges::find_if(wanted.values, [](const std::string& v) { return v.find('{') == v.npos; });
-  const std::string property = first == wanted.values.end() ? "*" : std::string(property_name(*first));
+  const auto first = std::ranges::find_if_not(wanted.values, is_text);
+  const std::string property = first == wanted.values.end() ? "*" : std::string(TemplateValue(*first).property);
   PatternBudget budget;
   std::vector<std::uint32_t> objects;
   for (const auto& [name, limit] : {std::pair(property, kMaxObjects), {std::string("*"), std::size_t{1}}}) {
@@ -116,7 +126,7 @@ void TemplateFrame::add_template(const StreamMessage& wanted) {
 // Appends the arguments of one object. Returns false if it lacks a property.
 bool TemplateFrame::add_values(const StreamMessage& wanted, std::uint32_t node, std::size_t index, Draft& draft) {
   for (const std::string& value : wanted.values) {
-    if (value.find('{') == std::string::npos) {
+    if (!is_text(value)) {
       if (!add_value(value, wanted.scale, node, draft)) return false;
       continue;
     }
@@ -127,30 +137,25 @@ bool TemplateFrame::add_values(const StreamMessage& wanted, std::uint32_t node, 
 }
 
 bool TemplateFrame::add_value(const std::string& value, double scale, std::uint32_t node, Draft& draft) {
-  std::string_view name = value;
-  const bool negative = name.starts_with('-');
-  if (negative) name.remove_prefix(1);
-  const std::size_t dot = name.find('.');
-  const std::string_view component = dot == std::string_view::npos ? "" : name.substr(dot + 1);
-  name = name.substr(0, dot);
+  const TemplateValue parts(value);
   const PropertyTable& table = *tree_->nodes()[node].table;
-  const Property* const property = table.find(name);
+  const Property* const property = table.find(parts.property);
   const auto reject = [&](const std::string& why) {
     problem(fmt::format("{} of {}: {}", value, tree_->path(node), why));
     return false;
   };
   if (property == nullptr)
-    return reject(fmt::format("there is no '{}'{}", name, name_hint(name, table.property_names())));
+    return reject(fmt::format("there is no '{}'{}", parts.property, name_hint(parts.property, table.property_names())));
   if (property->width == 0) return reject("it has no number");
   std::uint32_t first = 0;
   std::uint32_t count = property->width;
-  if (dot != std::string_view::npos) {
-    const std::optional<std::uint32_t> one = component_named(component, property->width);
-    if (!one) return reject(fmt::format("there is no component '{}'", component));
+  if (parts.component) {
+    const std::optional<std::uint32_t> one = component_named(*parts.component, property->width);
+    if (!one) return reject(fmt::format("there is no component '{}'", *parts.component));
     first = *one;
     count = 1;
   }
-  const auto factor = static_cast<float>(negative ? -scale : scale);
+  const auto factor = static_cast<float>(parts.negative ? -scale : scale);
   for (std::uint32_t i = 0; i < count; i++) {
     draft.numbers.push_back(
         {static_cast<std::uint32_t>(draft.arguments.size()), tree_->location({node, property}), first + i, factor});

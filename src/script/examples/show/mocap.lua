@@ -1,4 +1,4 @@
--- A dancer from a file, drawn as a body; a ball hangs on the left hand, and a servo follows the left elbow.
+-- A dancer from a BVH file moves a body of capsules; a ball is attracted to the left hand.
 local dancer = sim:add_mocap("dancer", { source = "scripts/motion/dancer.bvh", unit = "cm", offset = vec3(0, 1, 0) })
 print(#dancer.joints, dancer.duration, dancer:joint("left_hand").parent.name) --> 20 8 left_forearm
 local figure = dancer:add_body("figure", { radius = 0.05 })
@@ -10,7 +10,7 @@ ball:add_behavior("mocap_attraction", "pull", {
   source = dancer.number, joint = dancer:joint("left_hand").number, stiffness = 50, damping = 2,
 })
 
--- a dancer who is received, as rigid bodies with the names of their markers
+-- a second source receives rigid bodies by OSC; the address contains their names
 local actor = sim:add_mocap("actor", {
   messages = { ["/rigid/<joint>/pose"] = "x y z qx qy qz qw" }, up = "y", unit = "mm", joints = { "hat", "cane" },
 })

@@ -1,4 +1,4 @@
--- The tip of a pendulum lights a lamp: the faster it moves, the brighter is the lamp.
+-- A lamp becomes visible when the tip of a pendulum moves fast.
 local ball = sim:add_sphere_shape("ball", 0.1)
 local arm = sim:add_body("arm")
 arm:add_part("base", ball, { mass = 0, position = vec3(0, 0, 2) })

@@ -41,6 +41,9 @@ end
 
 local function set_source(opts)
   local source = opts.source
+  if opts.messages ~= nil and opts.dancer ~= nil then
+    fail("add_mocap: dancer has no effect on messages; remove it, and write it in their addresses")
+  end
   if source == nil and opts.messages ~= nil then return end
   P.check_text(source, "add_mocap: source (a .bvh file, 'osc' or 'vmc')")
   if source:lower():find("%.bvh$") then
@@ -51,6 +54,9 @@ local function set_source(opts)
     return option(file, source, "add_mocap: source")
   end
   if source == "osc" and opts.messages ~= nil then return end
+  if source == "vmc" and opts.messages ~= nil then
+    fail("add_mocap: VMC has messages of its own; remove source or messages")
+  end
   if source == "vmc" and opts.dancer ~= nil then fail("add_mocap: VMC has no dancer; give each its own port") end
   option(dialect, source, "add_mocap: source")
 end

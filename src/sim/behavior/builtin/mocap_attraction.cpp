@@ -1,5 +1,5 @@
 // mocap_attraction: pulls each part towards a joint of a dancer, or onto a coil around a limb.
-#include <algorithm>
+#include <cmath>
 
 #include "sim/behavior/behavior.h"
 #include "sim/behavior/common_properties.h"

@@ -1,6 +1,6 @@
 // mocap_body: moves kinematic parts as the bones of a dancer.
+#include <algorithm>
 #include <cstdint>
-#include <vector>
 
 #include "sim/behavior/behavior.h"
 #include "sim/mocap/mocap_behavior.h"

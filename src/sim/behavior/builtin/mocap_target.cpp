@@ -1,6 +1,6 @@
 // mocap_target: moves the targets of motors by a rotation of a dancer's joint.
 #include <algorithm>
-#include <vector>
+#include <cmath>
 
 #include "base/memory/archive.h"
 #include "sim/behavior/behavior.h"
@@ -22,7 +22,7 @@ class MocapTarget final : public Behavior {
 
   void step(double dt) override {
     const MocapJoint* const from = mocap_joint(world(), number(source), number(joint));
-    if (from == nullptr || !from->placed()) return;
+    if (from == nullptr) return;
     const int kind = static_cast<int>(number(measure));
     const double angle = kind == bend ? mocap_bend(*from) : mocap_turn(*from, kind);
     // the shorter way from the previous angle, so that it doesn't jump after half a turn

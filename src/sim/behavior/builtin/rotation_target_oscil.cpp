@@ -1,4 +1,4 @@
-// rotation_target_oscil: moves servos and springs back and forth between two rotations, as one of them at a time.
+// rotation_target_oscil: moves servos and springs to one of two rotations in turn.
 #include <cstdint>
 
 #include "base/memory/archive.h"
