@@ -7,6 +7,7 @@
 
 #include "app/program.h"
 #include "app/taken_port.h"
+#include "support/skip.h"
 
 namespace limber::app::test {
 namespace {
@@ -120,6 +121,7 @@ RunResult run_input(const std::string& input) {
 }
 
 TEST(Errors, MatchTheTable) {
+  LIMBER_SKIP_IF(kAddressSanitizer, "the errors' own tests execute the same code");
   const TempFolder folder;
   write_inputs(folder);
   const PortInUse port_in_use(SOCK_DGRAM);

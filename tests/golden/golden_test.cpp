@@ -2,6 +2,7 @@
 // hash. LIMBER_GOLDEN_OUT=FILE appends lines "name ticks hash threads" to that file. LIMBER_GOLDEN_RECORD=FILE
 // records the show to this file.
 #include "golden/golden.h"
+#include "support/skip.h"
 
 namespace limber::golden {
 namespace {
@@ -43,6 +44,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Golden,
                          ::testing::Combine(::testing::ValuesIn(scene_names()), ::testing::Values(1, 2, 3)), name_of);
 
 TEST(GoldenShow, TakeReplaysToItsHash) {
+  LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer, "other tests replay takes");
   if (const char* const file = std::getenv("LIMBER_GOLDEN_RECORD")) {
     ScenePlay show("show.lua", 1);
     show.play();

@@ -156,6 +156,7 @@ const std::map<std::string, double> kThings = {{"cube", 0.2}, {"ball", 0.5}, {"b
 
 // A finger presses with safety·m·g/(2µ) while the thing hangs still, but with 3 N at least.
 TEST(Mechanisms, TheGripperPressesAsTheWeightDemands) {
+  LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer, "other tests of scenes execute the same code");
   Player player("gripper.lua");
   std::map<std::string, int> held;
   std::map<std::string, double> rest, highest;
@@ -181,6 +182,7 @@ TEST(Mechanisms, TheGripperPressesAsTheWeightDemands) {
 
 // Below 1, friction is at its limit and each force is smaller than the one before.
 TEST(Mechanisms, AGripThatIsTooWeakSlips) {
+  LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer, "other tests of scenes execute the same code");
   Player player("gripper.lua");
   player.send("/scene/safety", {Arg::of(0.9)});
   player.play(1);

@@ -77,6 +77,7 @@ TEST(Scenes, TheDancerDancesWithinItsLimits) {
 // Left and right, while walking and on the spot, it turns at the commanded rate, a little slower when feet slip, and
 // stays on its feet.
 TEST(Scenes, TheQuadrupedTurnsAtTheCommandedRate) {
+  LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer, "golden scenes cover the same code");
   for (const auto& [turn, stride] : {std::pair(0.6, 0.12), std::pair(-1.0, 0.12), std::pair(1.0, 0.0)}) {
     Player player("quadruped.lua");
     const sim::Part& trunk = *player.engine->world().find_body("dog")->root();

@@ -9,6 +9,7 @@
 #include "base/threads/thread_pool.h"
 #include "sim/collision/time_of_impact.h"
 #include "sim/stage.h"
+#include "support/skip.h"
 
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 
@@ -250,6 +251,7 @@ TEST(ContinuousCollision, AKinematicPaddlePassesNoBall) {
 }
 
 TEST(ContinuousCollision, IsTheSameForAnyNumberOfThreads) {
+  LIMBER_SKIP_IF(kAddressSanitizer, "the thread sanitizer checks it");
   const auto hash = [](int threads) {
     Store store;
     WorldSetup setup;

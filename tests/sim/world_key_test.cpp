@@ -10,6 +10,7 @@
 #include "sim/arm.h"
 #include "sim/behavior_rig.h"
 #include "sim/counted_new.h"
+#include "support/skip.h"
 
 namespace limber::sim {
 namespace {
@@ -100,6 +101,7 @@ TEST(WorldCheckpoint, RestoresSmoothedTargets) {
 }
 
 TEST(WorldCheckpoint, RestoresContactsOfAHeap) {
+  LIMBER_SKIP_IF(kAddressSanitizer || kThreadSanitizer, "RestoresEnabledAndDisabledBodies executes the same code");
   ScriptedScene s;
   heap(s, 40);
   s.play(50);
