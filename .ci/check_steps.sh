@@ -227,8 +227,8 @@ count_fuzz() {
 
 fuzz_names() { (cd tests/fuzz 2>/dev/null && ls ./*_fuzz.cpp 2>/dev/null) | sed 's|^\./||; s|\.cpp$||'; }
 
-# Prints the number of inputs that a target processes in about 15 seconds.
-fuzz_runs() { case $1 in osc*) echo 90000 ;; script*) echo 1100 ;; websocket*) echo 2600 ;; *) echo 15000 ;; esac; }
+# Prints the number of inputs that a target processes in about 7 seconds.
+fuzz_runs() { case $1 in osc*) echo 40000 ;; script*) echo 500 ;; websocket*) echo 1200 ;; *) echo 7000 ;; esac; }
 
 # Repeatable as far as possible: one seed, a fixed number of runs, no inputs of earlier runs; the time limit is for slow
 # machines only. (Lua's garbage collector has a time limit, so runs of the OSC target differ slightly.)
