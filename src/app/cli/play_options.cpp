@@ -54,6 +54,8 @@ CLI::Validator plain_count() {
 // options of OSC and OSCQuery
 void add_network(CLI::App& play, NetworkOptions& o) {
   play.add_option("--osc-in", o.osc_in, "Address of OSC input; default 127.0.0.1:9003.")->type_name("[ADDR:]PORT|off");
+  play.add_option("--osc-tcp", o.osc_tcp, "Address of OSC input by TCP, with SLIP or with lengths; default: none.")
+      ->type_name("[ADDR:]PORT|off");
   play.add_option("--osc-allow", o.osc_allow, "Accept only these senders, such as 192.168.1.0/24; may be repeated.")
       ->type_name("ADDRESS[/BITS],...")
       ->join(',');

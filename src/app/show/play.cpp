@@ -83,6 +83,11 @@ Result<osc::OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
   } else if (fast) {
     osc.in.emplace();  // batch runs may run in parallel: no ports unless requested
   }
+  if (!options.osc_tcp.empty()) {
+    auto tcp = osc::parse_listen("--osc-tcp", options.osc_tcp);
+    if (!tcp) return Error{tcp.error()};
+    osc.tcp = std::move(*tcp);
+  }
   for (const std::string& text : options.osc_out) {
     auto out = osc::parse_osc_out(text);
     if (!out) return Error{out.error()};

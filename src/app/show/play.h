@@ -21,7 +21,8 @@ struct LogOptions {
 
 /// Options of OSC and OSCQuery.
 struct NetworkOptions {
-  std::string osc_in;  ///< Empty: not given.
+  std::string osc_in;   ///< Empty: not given.
+  std::string osc_tcp;  ///< Empty: not given.
   std::string osc_allow;
   std::vector<std::string> osc_out;
   bool osc_optional = false;

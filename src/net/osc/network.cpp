@@ -32,12 +32,15 @@ std::array<std::uint64_t, 2> secret() {
 
 }  // namespace
 
-void NetworkStatus::set(std::vector<Endpoint> bound, const std::vector<ResolvedTarget>& targets) {
+void NetworkStatus::set(std::vector<Endpoint> bound, std::vector<Endpoint> bound_tcp,
+                        const std::vector<ResolvedTarget>& targets) {
   const std::scoped_lock lock(mutex_);
   bound_ = std::move(bound);
+  bound_tcp_ = std::move(bound_tcp);
   lines_.clear();
   for (const Endpoint& endpoint : bound_) lines_.push_back("OSC in " + endpoint_text(endpoint));
-  if (bound_.empty()) lines_.emplace_back("OSC in off");
+  for (const Endpoint& endpoint : bound_tcp_) lines_.push_back("OSC in " + endpoint_text(endpoint) + " (TCP)");
+  if (bound_.empty() && bound_tcp_.empty()) lines_.emplace_back("OSC in off");
   for (const ResolvedTarget& target : targets) lines_.push_back("OSC out " + target_text(target.config));
   if (targets.empty()) lines_.emplace_back("OSC out off");
 }
@@ -46,6 +49,7 @@ void NetworkStatus::clear() {
   const std::scoped_lock lock(mutex_);
   lines_.clear();
   bound_.clear();
+  bound_tcp_.clear();
 }
 
 std::vector<std::string> NetworkStatus::lines() const {
@@ -56,6 +60,11 @@ std::vector<std::string> NetworkStatus::lines() const {
 std::vector<Endpoint> NetworkStatus::bound() const {
   const std::scoped_lock lock(mutex_);
   return bound_;
+}
+
+std::vector<Endpoint> NetworkStatus::bound_tcp() const {
+  const std::scoped_lock lock(mutex_);
+  return bound_tcp_;
 }
 
 void Outbox::send(Sender& sender, std::size_t max_messages) {
@@ -94,6 +103,7 @@ Network::Network(engine::EngineLink& link, OscOptions options, const engine::Tra
                  if (origin.source == CommandSource::osc) sender_.record_error_answer({origin.ip, origin.port});
                }},
           clock_),
+      tcp_(tcp_callbacks(), clock_),
       sender_(
           link.counters, link.message_log, [this](const Endpoint& sender) { return receiver_.socket_of(sender); },
           clock_),
@@ -107,9 +117,14 @@ Network::Network(engine::EngineLink& link, OscOptions options, const engine::Tra
                    }),
       outbox_(link),
       amplification_(options_.allow, options_.connected ? options_.connected : connected_subnets, secret()) {
-  sender_.set_gates([this](const Endpoint& to, std::size_t bytes,
-                           std::size_t) { return amplification_.try_send(to, bytes, clock_.steady()); },
-                    subscription_gate());
+  // a connection proves that its client has the address
+  sender_.set_gates(
+      [this](const Endpoint& to, std::size_t bytes, std::size_t) {
+        return tcp_.is_connected(to) || amplification_.try_send(to, bytes, clock_.steady());
+      },
+      subscription_gate());
+  sender_.set_tcp(tcp_);
+  streams_.set_tcp(tcp_);
   link_.wake_network = [wake = wake_] { wake->notify(); };
 }
 
@@ -121,6 +136,7 @@ Result<void> Network::start() {
   std::vector<std::string> errors;
   if (const Result<void> opened = sender_.open(); !opened) errors.push_back(opened.error());
   std::ranges::move(apply(effective_config(options_, last_config_.get())), std::back_inserter(errors));
+  std::ranges::move(tcp_.listen(options_.tcp), std::back_inserter(errors));
   // a machine that has just booted may not resolve names yet
   for (const std::string& error : resolve_targets(kStartLookUpTimeout)) log_warning("{}", error);
   if (!errors.empty() && !options_.optional) {
@@ -128,33 +144,34 @@ Result<void> Network::start() {
     return Error{fmt::format("{}", fmt::join(errors, "\n"))};
   }
   for (const std::string& error : errors) log_warning("{}", error);
-  stop_ = false;
-  thread_ = std::thread([this] { run(); });
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   return {};
 }
 
 void Network::stop() {
   if (thread_.joinable()) {
-    stop_ = true;
+    thread_.request_stop();
     wake_->notify();
     thread_.join();
   }
   // send the engine's last messages
   if (sender_.socket().is_open()) outbox_.send(sender_, kUnlimited);
   receiver_.close();
+  tcp_.close();
   sender_.close();
   config_ = {};
   streams_.set_targets({});
   status_.clear();
 }
 
-void Network::run() {
+void Network::run(const std::stop_token& stop) {
   system::name_this_thread("limber-network");
-  while (!stop_.load()) {
+  while (!stop.stop_requested()) {
     wait_for_events();
     wake_->clear();
     for (const int fd : receiver_.descriptors()) receiver_.receive(fd);
     process_packets();
+    if (tcp_.work()) update_status_lines();
     receiver_.process_pending();
     apply_new_config();
     retry_listen();
@@ -173,12 +190,13 @@ void Network::wait_for_events() {
   std::vector<system::PollEntry> descriptors;
   descriptors.push_back({.fd = wake_->fd()});
   for (const int fd : receiver_.descriptors()) descriptors.push_back({.fd = fd});
+  tcp_.add_poll_entries(descriptors);
   std::optional<std::int64_t> timeout = streams_.timeout();
   std::optional<std::int64_t> look_up = targets_.retry_at();
   if (look_up) *look_up = std::max<std::int64_t>(0, *look_up - clock_.steady());
   std::optional<std::int64_t> unsent;
   if (outbox_.has_unsent()) unsent = 0;
-  for (const auto other : {receiver_.timeout(), subscribers_.timeout(), look_up, unsent}) {
+  for (const auto other : {receiver_.timeout(), tcp_.timeout(), subscribers_.timeout(), look_up, unsent}) {
     if (other && (!timeout || *other < *timeout)) timeout = other;
   }
   std::optional<std::chrono::nanoseconds> limit;
@@ -205,7 +223,22 @@ std::vector<std::string> Network::resolve_targets(std::chrono::milliseconds wait
   return errors;
 }
 
-void Network::update_status_lines() { status_.set(receiver_.bound(), targets_.targets()); }
+void Network::update_status_lines() { status_.set(receiver_.bound(), tcp_.bound(), targets_.targets()); }
+
+TcpCallbacks Network::tcp_callbacks() {
+  const auto origin = [](const Endpoint& peer) { return CommandOrigin{CommandSource::osc, peer.ip, peer.port}; };
+  return {.is_allowed = [this](std::uint32_t ip) { return is_allowed(options_.allow, ip); },
+          .receive =
+              [this, origin](const Endpoint& from, std::string_view packet) {
+                const Receiver::ScanResult scanned = receiver_.scan(packet.data(), packet.size(), origin(from));
+                if (scanned.urgent) link_.wake_engine();
+                receiver_.process(packet.data(), packet.size(), origin(from), scanned);
+              },
+          .closed =
+              [this, origin](const Endpoint& peer) {
+                (void)subscribers_.handle({"/unsubscribe", {}}, origin(peer));
+              }};
+}
 
 void Network::apply_new_config() {
   const bool resolved = targets_.consume_changed();
@@ -281,7 +314,8 @@ void Network::update_own_endpoints() {
 
 SendGate Network::subscription_gate() {
   return [this](const Endpoint& to, std::size_t bytes, std::size_t datagrams) {
-    return subscribers_.try_consume(to, bytes, datagrams) && amplification_.try_send(to, bytes, clock_.steady());
+    return subscribers_.try_consume(to, bytes, datagrams) &&
+           (tcp_.is_connected(to) || amplification_.try_send(to, bytes, clock_.steady()));
   };
 }
 
@@ -311,7 +345,7 @@ Result<void> Network::subscribe(const Message& message, const CommandOrigin& ori
     sender_.report_own_input(peer);
     return {};
   }
-  if (origin.source == CommandSource::osc) challenge(peer, true);
+  if (origin.source == CommandSource::osc && !tcp_.is_connected(peer)) challenge(peer, true);
   return subscribers_.handle(message, origin);
 }
 

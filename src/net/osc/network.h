@@ -2,11 +2,11 @@
 // sends answers, events and streams.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <memory>
 #include <mutex>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <utility>
@@ -23,6 +23,7 @@
 #include "net/osc/sender.h"
 #include "net/osc/streams.h"
 #include "net/osc/subscribers.h"
+#include "net/osc/tcp/tcp_peers.h"
 #include "net/osc/unreachable_targets.h"
 
 namespace limber::osc {
@@ -30,15 +31,16 @@ namespace limber::osc {
 /// The open ports, for display. [any]
 class NetworkStatus {
  public:
-  void set(std::vector<Endpoint> bound, const std::vector<ResolvedTarget>& targets);
+  void set(std::vector<Endpoint> bound, std::vector<Endpoint> bound_tcp, const std::vector<ResolvedTarget>& targets);
   void clear();
   std::vector<std::string> lines() const;
   std::vector<Endpoint> bound() const;
+  std::vector<Endpoint> bound_tcp() const;
 
  private:
   mutable std::mutex mutex_;
   std::vector<std::string> lines_;
-  std::vector<Endpoint> bound_;
+  std::vector<Endpoint> bound_, bound_tcp_;
 };
 
 /// Packets of other transports. [net], unless noted otherwise.
@@ -103,13 +105,16 @@ class Network {
   std::vector<std::string> status_lines() const { return status_.lines(); }
   /// The bound listening endpoints, with the port that the system chose for port 0. [any]
   std::vector<Endpoint> bound() const { return status_.bound(); }
+  /// The same of TCP. [any]
+  std::vector<Endpoint> bound_tcp() const { return status_.bound_tcp(); }
 
  private:
-  void run();
+  void run(const std::stop_token& stop);
   void wait_for_events();
   std::vector<std::string> apply(const OscConfig& config);
   std::vector<std::string> resolve_targets(std::chrono::milliseconds wait = {});
   void update_status_lines();
+  TcpCallbacks tcp_callbacks();
   void apply_new_config();
   void retry_listen();
   void retry_look_ups();
@@ -130,6 +135,7 @@ class Network {
   const NetClock clock_;
   std::shared_ptr<system::Wake> wake_;
   Receiver receiver_;
+  TcpPeers tcp_;
   Sender sender_;
   TargetResolver targets_;
   UnreachableTargets unreachable_;
@@ -141,8 +147,7 @@ class Network {
   OscConfig config_;
   AmplificationLimit amplification_;
   NetworkStatus status_;
-  std::thread thread_;
-  std::atomic<bool> stop_{false};
+  std::jthread thread_;
 };
 
 }  // namespace limber::osc

@@ -100,14 +100,13 @@ std::vector<std::string_view> split_options(std::string_view text) {
 }
 
 // Returns the reason why listening at this address is not supported, or null.
-const char* unsupported_reason(std::string_view address) {
+const char* unsupported_reason(std::string_view option, std::string_view address) {
   if (address.find(':') != std::string_view::npos || address.starts_with('[')) {
     return "IPv6 is not supported; write an IPv4 address, such as 127.0.0.1:9003 or 0.0.0.0:9003";
   }
   const std::optional<std::uint16_t> first = parse_port(address.substr(0, address.find('.')));
-  if (first && *first >= 224 && *first <= 239) {
-    return "multicast is not supported; let the sender use this machine's address, and listen at 0.0.0.0:9003";
-  }
+  if (first && *first >= 224 && *first <= 239 && option != "--osc-in")
+    return "a multicast group is for --osc-in only; write the address of this machine, or 0.0.0.0";
   return nullptr;
 }
 
@@ -132,7 +131,7 @@ Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::st
     const std::size_t colon = piece.rfind(':');
     const std::string_view port_text = colon == std::string_view::npos ? piece : piece.substr(colon + 1);
     if (colon != std::string_view::npos) address.address = piece.substr(0, colon);
-    if (const char* const reason = unsupported_reason(address.address)) {
+    if (const char* const reason = unsupported_reason(option, address.address)) {
       return Error{fmt::format("{} '{}': {}", option, printable(text), reason)};
     }
     const std::optional<std::uint16_t> port = parse_port(port_text);

@@ -27,6 +27,7 @@ bool is_allowed(const std::vector<Cidr>& list, std::uint32_t address);
 /// The OSC options of the command line. `in` and `out`: nullopt if the option is not given; an empty list means off.
 struct OscOptions {
   std::optional<std::vector<ListenAddress>> in;  ///< `--osc-in`; nullopt: the scene or the default decides.
+  std::vector<ListenAddress> tcp = {};           ///< `--osc-tcp`; empty: none.
   std::optional<std::vector<StreamTarget>> out;  ///< `--osc-out`.
   std::vector<Cidr> allow;                       ///< `--osc-allow`; empty: every sender is allowed.
   bool optional = false;                         ///< `--osc-optional`: continue if a port can't be opened.

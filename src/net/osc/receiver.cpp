@@ -8,6 +8,7 @@
 
 #include "base/log/log.h"
 #include "base/plural.h"
+#include "base/system/net/interfaces.h"
 #include "base/text.h"
 #include "net/osc/packets/decode.h"
 #include "net/osc/packets/packet_parser.h"
@@ -25,6 +26,12 @@ constexpr std::size_t kDatagramOverhead = 256;                // budget per data
 constexpr const char* kQueueFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
 constexpr const char* kListenHint =
     "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
+
+std::vector<std::uint32_t> own_addresses() {
+  std::vector<std::uint32_t> list;
+  for (const system::Subnet& subnet : system::connected_subnets()) list.push_back(subnet.ip);
+  return list;
+}
 
 std::size_t slot_of(const Endpoint& e) { return (e.ip * 2654435761u ^ e.port * 40503u) >> 7; }
 
@@ -94,7 +101,8 @@ std::optional<std::string> Receiver::open(const ListenAddress& address) {
   const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
   const Result<Endpoint> at = resolve(address.address, address.port);
   if (!at) return fmt::format("OSC can't listen on {}: {}. {}", name, at.error(), kListenHint);
-  Result<system::UdpSocket> socket = system::open_udp(*at);
+  Result<system::UdpSocket> socket =
+      system::is_multicast(at->ip) ? system::open_multicast(*at, own_addresses()) : system::open_udp(*at);
   if (!socket) return fmt::format("OSC can't listen on {}: {}. {}", name, socket.error(), kListenHint);
 
   system::count_dropped(socket->fd());
@@ -106,7 +114,7 @@ std::optional<std::string> Receiver::open(const ListenAddress& address) {
         "Increase it with sysctl -w net.core.rmem_max={}",
         granted / 1024, kReceiveBuffer / 1024, kReceiveBuffer);
   }
-  if (at->ip == 0) {
+  if (at->ip == 0 || system::is_multicast(at->ip)) {
     log_warning("OSC in {}: open to the network{}", name,
                 allow_.empty() ? ", every sender is accepted. Restrict it with --osc-allow CIDR"
                                : ", senders in --osc-allow are accepted");

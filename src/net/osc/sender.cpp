@@ -108,9 +108,17 @@ void Sender::send_to_origin(const CommandOrigin& origin, std::span<const char> p
 
 // Sends from the socket that received the sender's message.
 void Sender::reply(const Endpoint& to, std::span<const char> packet) {
+  if (send_by_tcp(to, packet)) return;
   const int listening = reply_socket_(to);
   if (listening < 0 || is_own_input(to)) return send_to(to, packet);
   handle_result(system::send_datagram(listening, to, packet), to, packet);
+}
+
+// Returns false if the receiver is not connected by TCP.
+bool Sender::send_by_tcp(const Endpoint& to, std::span<const char> packet) {
+  if (tcp_ == nullptr || !tcp_->is_connected(to)) return false;
+  handle_result(tcp_->send(to, packet), to, packet);
+  return true;
 }
 
 void Sender::set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses) {
@@ -161,6 +169,7 @@ void Sender::send_to_subscribers(std::span<const char> packet) {
 }
 
 void Sender::send_to(const Endpoint& to, std::span<const char> packet) {
+  if (send_by_tcp(to, packet)) return;
   if (is_own_input(to)) return report_own_input(to);
   handle_result(out_.send(to, packet), to, packet);
 }

@@ -1,5 +1,5 @@
-// Sender: sends answers, errors and a scene's messages, one datagram each. Its socket is not bound to an address,
-// so it reaches other machines even if the program listens on loopback only.
+// Sender: sends answers, errors and a scene's messages, one datagram each, or by TCP to clients that are connected. Its
+// UDP socket is not bound to an address, so it reaches other machines even if the program listens on loopback only.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 #include "net/osc/endpoint.h"
 #include "net/osc/error_rate_limit.h"
 #include "net/osc/packets/encode.h"
+#include "net/osc/tcp/tcp_peers.h"
 #include "net/osc/warning_throttle.h"
 
 namespace limber::osc {
@@ -42,6 +43,8 @@ class Sender {
     may_answer_ = std::move(answers);
     may_serve_ = std::move(subscriptions);
   }
+  /// Sets the clients that receive by their connection instead of by UDP.
+  void set_tcp(TcpPeers& tcp) { tcp_ = &tcp; }
   /// Sets the endpoints this program listens on and this machine's addresses. Nothing is sent to its own inputs.
   void set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses);
   bool is_own_input(const Endpoint& target) const;
@@ -76,6 +79,7 @@ class Sender {
   void send_to_subscribers(std::span<const char> packet);
   void send_to(const Endpoint& to, std::span<const char> packet);
   void reply(const Endpoint& to, std::span<const char> packet);
+  bool send_by_tcp(const Endpoint& to, std::span<const char> packet);
   std::span<const char> encode(const Message& message);
   void handle_result(int error, const Endpoint& to, std::span<const char> packet);
 
@@ -84,6 +88,7 @@ class Sender {
   std::function<int(const Endpoint&)> reply_socket_;
   const NetClock& clock_;
   system::UdpSender out_;
+  TcpPeers* tcp_ = nullptr;
   std::vector<ResolvedTarget> targets_;
   std::vector<Endpoint> subscribers_;
   SendGate may_answer_ = [](const Endpoint&, std::size_t, std::size_t) { return true; };

@@ -94,7 +94,10 @@ void Streams::send_templates(system::UdpSender& sender, Stream& stream) {
 template <class Frame>
 void Streams::send(system::UdpSender& sender, Stream& stream, const Frame& frame) {
   const std::span<const std::uint32_t> sizes = frame.datagram_sizes();
-  const system::BatchResult result = sender.send(stream.target.endpoint, frame.bytes(), sizes, stream.segmentation);
+  const Endpoint& to = stream.target.endpoint;
+  const system::BatchResult result = tcp_ != nullptr && tcp_->is_connected(to)
+                                         ? send_by_tcp(to, frame.bytes(), sizes)
+                                         : sender.send(to, frame.bytes(), sizes, stream.segmentation);
   link_.counters.sent.fetch_add(result.sent, std::memory_order_relaxed);
   if (link_.message_log.enabled()) log_frame(stream, frame.bytes(), sizes, result.sent);
   if (result.error == 0) return;
@@ -104,6 +107,18 @@ void Streams::send(system::UdpSender& sender, Stream& stream, const Frame& frame
                 endpoint_text(stream.target.endpoint), sizes.size() - result.sent, sizes.size(),
                 std::generic_category().message(result.error), *more);
   }
+}
+
+system::BatchResult Streams::send_by_tcp(const Endpoint& to, std::span<const char> bytes,
+                                         std::span<const std::uint32_t> sizes) {
+  system::BatchResult result;
+  for (const std::uint32_t size : sizes) {
+    result.error = tcp_->send(to, bytes.first(size));
+    if (result.error != 0) break;
+    result.sent++;
+    bytes = bytes.subspan(size);
+  }
+  return result;
 }
 
 void Streams::log_frame(const Stream& stream, std::span<const char> bytes, std::span<const std::uint32_t> sizes,

@@ -29,6 +29,8 @@ class Streams {
       engine::EngineLink& link, const engine::TransientOffsets& offsets, const NetClock& clock,
       SendGate may_serve = [](const Endpoint&, std::size_t, std::size_t) { return true; });
 
+  /// Sets the clients that receive by their connection instead of by UDP.
+  void set_tcp(TcpPeers& tcp) { tcp_ = &tcp; }
   /// Targets that are also in the old list keep their schedule.
   void set_targets(const std::vector<ResolvedTarget>& targets);
   /// Sends the frames that are due; those to subscribers in slices, so that input is not delayed. The snapshot of a
@@ -55,6 +57,8 @@ class Streams {
   void send_templates(system::UdpSender& sender, Stream& stream);
   template <class Frame>
   void send(system::UdpSender& sender, Stream& stream, const Frame& frame);
+  system::BatchResult send_by_tcp(const Endpoint& to, std::span<const char> bytes,
+                                  std::span<const std::uint32_t> sizes);
   void log_frame(const Stream& stream, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
                  std::size_t datagrams);
 
@@ -62,6 +66,7 @@ class Streams {
   const engine::TransientOffsets offsets_;
   const NetClock& clock_;
   const SendGate may_serve_;
+  TcpPeers* tcp_ = nullptr;
   std::vector<std::unique_ptr<Stream>> streams_;
   std::size_t first_ = 0;  // index of the stream to check first
   WarningThrottle lost_log_;

@@ -43,6 +43,13 @@ Result<Endpoint> resolve(const std::string& host, std::uint16_t port) {
   return Endpoint{ntohl(address->sin_addr.s_addr), port};
 }
 
+Endpoint local_endpoint(int fd) {
+  sockaddr_in address{};
+  socklen_t length = sizeof address;
+  if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
+  return endpoint_of(address);
+}
+
 Descriptor connect_tcp(const Endpoint& to) {
   Descriptor socket = open_socket(AF_INET, SOCK_STREAM);
   if (!socket.is_open()) return socket;

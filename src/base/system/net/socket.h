@@ -33,6 +33,9 @@ bool is_ip_address(const std::string& text);
 /// this port. [any]
 Result<Endpoint> resolve(const std::string& host, std::uint16_t port);
 
+/// Returns the endpoint that a socket is bound to. [any]
+Endpoint local_endpoint(int fd);
+
 /// Opens a blocking TCP connection. Returns a closed descriptor on error, with errno set. [any]
 Descriptor connect_tcp(const Endpoint& to);
 

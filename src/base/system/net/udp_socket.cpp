@@ -9,12 +9,7 @@
 
 namespace limber::system {
 
-Endpoint UdpSocket::local() const {
-  sockaddr_in address{};
-  socklen_t length = sizeof address;
-  if (getsockname(fd(), reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
-  return endpoint_of(address);
-}
+Endpoint UdpSocket::local() const { return local_endpoint(fd()); }
 
 Result<UdpSocket> open_udp(const Endpoint& at) {
   const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
@@ -22,6 +17,28 @@ Result<UdpSocket> open_udp(const Endpoint& at) {
   if (!socket.is_open()) return system_error();
   const sockaddr_in address = socket_address(at);
   if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
+  return socket;
+}
+
+Result<UdpSocket> open_multicast(const Endpoint& group, std::span<const std::uint32_t> interfaces) {
+  const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
+  UdpSocket socket(open_socket(AF_INET, SOCK_DGRAM));
+  if (!socket.is_open()) return system_error();
+  const int on = 1;
+  setsockopt(socket.fd(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  const sockaddr_in address = socket_address(group);
+  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
+  errno = ENODEV;
+  bool joined = false;
+  for (const std::uint32_t interface : interfaces) {
+    ip_mreq request{};
+    request.imr_multiaddr = address.sin_addr;
+    request.imr_interface.s_addr = htonl(interface);
+    // an interface with several addresses has joined already
+    const bool done = setsockopt(socket.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) == 0;
+    joined = joined || done || errno == EADDRINUSE;
+  }
+  if (!joined) return system_error();
   return socket;
 }
 
