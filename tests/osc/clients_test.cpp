@@ -118,6 +118,21 @@ TEST(Clients, OscsendControlsTheScene) {
   EXPECT_EQ(a[8].text, "word");
 }
 
+TEST(Clients, OscsendControlsTheSceneByTcp) {
+  FakeEngine engine;
+  OscOptions options = options_to_port(9);
+  options.tcp = *parse_listen("--osc-tcp", "0");
+  Network network(engine.link, options, kTestOffsets);
+  ASSERT_TRUE(network.start().ok());
+  const std::string url = "osc.tcp://127.0.0.1:" + std::to_string(network.bound_tcp().at(0).port) + "/";
+  EXPECT_EQ(Child({"oscsend", url, "/physics/part/mass", "ssf", "quadruped", "foot_1", "0.25"}).status(), 0);
+  ASSERT_TRUE(engine.wait_for(1));
+  const Message& mass = engine.commands.at(0).messages.at(0);
+  EXPECT_EQ(mass.address, "/physics/part/mass");
+  ASSERT_EQ(mass.args.size(), 3u);
+  EXPECT_EQ(mass.args[2].number, 0.25);
+}
+
 TEST(Clients, OscdumpReceivesTheStreams) {
   // a port that is currently free; oscdump opens it shortly after
   const std::uint16_t port = Client().end().port;
