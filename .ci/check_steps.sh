@@ -4,9 +4,10 @@
 passed=0
 failed=0
 # Lists of modules, that is folders of tests/; check_module_lists finds names that do not exist. The address sanitizer runs
-# all except those that only read files, the benchmarks and the long tests; the thread sanitizer runs those that use
-# several threads. Tests that are too slow there leave themselves out (tests/support/skip.h).
-asan_leaves_out="architecture bench first_minutes long"
+# all except those that only read files, the benchmarks, the long tests, and those that start the program
+# (--long asan_app); the thread sanitizer runs those that use several threads. Tests that are too slow there leave
+# themselves out (tests/support/skip.h).
+asan_leaves_out="app architecture bench first_minutes long"
 tsan_takes="base engine osc lighting console oscquery stress"
 # The modules with the longest tests. They start first, in two halves, to keep all cores busy until the end.
 slow_modules="app engine scenes script sim"

@@ -88,6 +88,11 @@ long_lua_difference() {
   unset LIMBER_LUA_SEED LIMBER_LUA_PROGRAMS LIMBER_LUA_PROGRESS
   rm -f "$note.commit"
 }
+# --long asan_app: the program's commands with the address and undefined-behavior sanitizers
+long_asan_app() {
+  configure_asan
+  build build/asan test_app limber && run_tests build/asan app
+}
 # --long math: the math functions against MPFR, ten million arguments each, and all floats
 long_math() { tests_at_length 'LongMath*'; }
 # --long environment: a session with full disks, hung displays, floods and so on; writes docs/reference/environments.md

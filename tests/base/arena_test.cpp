@@ -10,6 +10,7 @@
 
 #include "base/random.h"
 #include "base/sanitized.h"
+#include "support/skip.h"
 
 #ifdef LIMBER_ADDRESS_SANITIZER
 #include <sanitizer/lsan_interface.h>
@@ -66,6 +67,7 @@ void run_random_operations(Arena& arena, TestBlocks& blocks, Random& random, int
 }
 
 TEST(Arena, BlocksDoNotOverlap) {
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   Arena arena;
   ASSERT_TRUE(arena.exists());
   TestBlocks blocks;
@@ -177,6 +179,7 @@ TEST(Arena, PointersInBlocksPreventLeakReports) {
 
 // After a restore, all blocks are those of the capture, and later allocations get the same addresses as before.
 TEST(Arena, RestoreReproducesBlocksAndLaterAllocations) {
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   Arena arena;
   PageStore pages;
   Random random(2, "arena");

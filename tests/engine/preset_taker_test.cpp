@@ -10,6 +10,7 @@
 #include "engine/rig.h"
 #include "properties/catalog.h"
 #include "sim/world/part.h"
+#include "support/skip.h"
 
 namespace limber::engine::test {
 namespace {
@@ -224,6 +225,7 @@ TEST_F(PresetCapturerTest, ReportsASelectionWithoutMatch) {
 
 // With a buffer that was allocated ahead, also when it is too small for the added nodes.
 TEST_F(PresetCapturerTest, LargePresetsAreTheSameInAPreparedBuffer) {
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   PresetCapturer capturer;
   for (const int more : {7000, 1, 1500}) {
     add_bodies(more);

@@ -13,6 +13,7 @@
 #include "osc/bad_packets.h"
 #include "osc/oscpack_reference.h"
 #include "osc/same_decoded.h"
+#include "support/skip.h"
 
 namespace limber::osc {
 namespace {
@@ -168,6 +169,7 @@ bool is_stricter_than_oscpack(std::string_view fault) {
 }
 
 TEST(OscpackReference, AcceptsTheSameMutatedPackets) {
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   Random random(7);
   int accepted = 0;
   int rejected = 0;

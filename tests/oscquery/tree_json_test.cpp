@@ -10,6 +10,7 @@
 #include "engine/everything.h"
 #include "engine/image_of.h"
 #include "net/oscquery/attributes.h"
+#include "support/skip.h"
 
 namespace limber::oscquery {
 namespace {
@@ -109,6 +110,7 @@ TEST(TreeJson, LimitsDepth) {
 }
 
 TEST(TreeJson, OmitsDeepestLevelsOfHugeTree) {
+  LIMBER_SKIP_IF(kThreadSanitizer, "it uses one thread");
   // more properties than the limit of a response: nodes of eight properties in a separate store
   static const PropertyTable table = [] {
     std::vector<Property> properties;
