@@ -1,7 +1,7 @@
 -- A gait that a search has found: the quadruped walks more than twice as fast as that of quadruped.lua.
 -- Each joint follows a wave; the default values of the parameters are the result of this search:
 --
---   limber evolve scripts/gait.lua --maximize speed --seeds 1:3 --population 16 --generations 60
+--   limber evolve scripts/gait.lua --maximize speed --seeds 1:2 --duration 30 --population 16 --generations 40
 --
 -- Try while it runs:   oscsend 127.0.0.1 9003 /scene/pace f 1.5
 
@@ -15,18 +15,18 @@ for part in dog:parts() do part.friction = 0.9 end
 local trunk = dog:part("trunk")
 
 params {
-  { "pace",  2.98,   min = 1,    max = 3,   unit = "Hz", doc = "Steps of each leg per second." },
-  { "swing", 0.41,   min = 0,    max = 0.8, unit = "rad", doc = "How far the thighs swing to either side." },
-  { "lift",  0.191,  min = 0,    max = 1.2, unit = "rad", doc = "How far the knees bend in the air." },
-  { "lag",   0.253,  min = -0.5, max = 0.5, doc = "Lag of the knees behind the thighs, in steps." },
-  { "pair",  0.202,  min = 0,    max = 1,   doc = "Lag of the right legs behind the left ones, in steps." },
-  { "back",  0.558,  min = 0,    max = 1,   doc = "Lag of the back legs behind the front ones, in steps." },
-  { "lean",  -0.071, min = -0.5, max = 0.5, unit = "rad", doc = "Mean angle of the thighs." },
-  { "bend",  0.597,  min = -0.6, max = 0.6, unit = "rad", doc = "Mean angle of the knees." },
-  { "push",  0.806,  min = 0.3,  max = 1.7, doc = "Swing of the back thighs, as a factor of that of the front ones." },
-  { "slope", -0.148, min = -0.4, max = 0.4, unit = "rad", doc = "Mean angle of the back thighs, relative to the front ones." },
-  { "width", 0.182,  min = -0.2, max = 0.2, unit = "rad", doc = "How far the hips spread the legs." },
-  { "steer", 1,      min = 0,    max = 3,   doc = "How much more the legs of one side swing for each rad to turn back." },
+  { "pace",  2.978,   min = 1,    max = 3,   unit = "Hz", doc = "Steps of each leg per second." },
+  { "swing", 0.3082,  min = 0,    max = 0.8, unit = "rad", doc = "How far the thighs swing to either side." },
+  { "lift",  0.1644,  min = 0,    max = 1.2, unit = "rad", doc = "How far the knees bend in the air." },
+  { "lag",   -0.431,  min = -0.5, max = 0.5, doc = "Lag of the knees behind the thighs, in steps." },
+  { "pair",  0.03566, min = 0,    max = 1,   doc = "Lag of the right legs behind the left ones, in steps." },
+  { "back",  0.2333,  min = 0,    max = 1,   doc = "Lag of the back legs behind the front ones, in steps." },
+  { "lean",  0.01612, min = -0.5, max = 0.5, unit = "rad", doc = "Mean angle of the thighs." },
+  { "bend",  0.5147,  min = -0.6, max = 0.6, unit = "rad", doc = "Mean angle of the knees." },
+  { "push",  1.167,   min = 0.3,  max = 1.7, doc = "Swing of the back thighs, as a factor of that of the front ones." },
+  { "slope", -0.3623, min = -0.4, max = 0.4, unit = "rad", doc = "Mean angle of the back thighs, relative to the front ones." },
+  { "width", 0.1411,  min = -0.2, max = 0.2, unit = "rad", doc = "How far the hips spread the legs." },
+  { "steer", 0.9062,  min = 0,    max = 3,   doc = "How much more the legs of one side swing for each rad to turn back." },
 }
 
 local legs = {}

@@ -3,9 +3,11 @@
 
 #include <unistd.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,7 +22,7 @@ namespace limber {
 
 /// Plays a scene of scripts/, or a file given by its absolute path.
 struct Player {
-  explicit Player(const std::string& scene) : started(begin(scene)) {
+  explicit Player(const std::string& scene, std::optional<std::uint64_t> seed = {}) : started(begin(scene, seed)) {
     EXPECT_TRUE(started.ok()) << (started.ok() ? "" : started.error());
   }
   struct MayFail {};
@@ -62,11 +64,12 @@ struct Player {
   Result<void> started;
 
  private:
-  Result<void> begin(const std::string& scene) {
+  Result<void> begin(const std::string& scene, std::optional<std::uint64_t> seed = {}) {
     log_to_stderr(false);
     engine::EngineOptions options;
     options.scene = scene.starts_with('/') ? scene : std::string(LIMBER_SOURCE_DIR) + "/scripts/" + scene;
     options.scene_options.data_dir = LIMBER_SOURCE_DIR;
+    options.scene_options.seed = seed;
     options.fast = true;
     options.print = false;
     engine = std::make_unique<engine::Engine>(link, options);

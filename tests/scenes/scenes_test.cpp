@@ -39,6 +39,27 @@ TEST(Scenes, TheQuadrupedStandsThenTrotsAtTheSpeedOfItsStride) {
   EXPECT_EQ(player.engine->faults(), 0u);
 }
 
+// Returns the speed over ground from second 2 to second 12 in m/s, with the path summed over half seconds.
+double dog_speed(const std::string& scene, std::uint64_t seed) {
+  Player player(scene, seed);
+  const sim::Part& trunk = *player.engine->world().find_body("dog")->root();
+  player.play(2);
+  double path = 0;
+  for (int i = 0; i < 20; i++) {
+    const Vec3 before = trunk.pose().position;
+    player.play(0.5);
+    const Vec3 moved = trunk.pose().position - before;
+    path += std::hypot(moved.x, moved.y);
+    EXPECT_GT((trunk.pose().rotation * Vec3(0, 0, 1)).z, 0.7) << "more than 45 degrees off upright, " << scene;
+  }
+  return path / 10;
+}
+
+TEST(Scenes, TheGaitThatASearchFoundIsTwiceAsFastAsTheWrittenOne) {
+  const double written = dog_speed("quadruped.lua", 1);
+  for (const std::uint64_t seed : {1u, 2u, 3u, 4u}) EXPECT_GT(dog_speed("gait.lua", seed), 2 * written) << seed;
+}
+
 // Wild movements press the dancer's limbs against their limits, which hold within half a degree.
 TEST(Scenes, TheDancerDancesWithinItsLimits) {
   Player player("dancer.lua");
