@@ -1,4 +1,4 @@
--- A gait that a search has found: the quadruped walks more than twice as fast as that of quadruped.lua.
+-- A gait that a search has found: the quadruped walks three times as fast as that of quadruped.lua.
 -- Each joint follows a wave; the default values of the parameters are the result of this search:
 --
 --   limber evolve scripts/gait.lua --maximize speed --seeds 1:2 --duration 30 --population 16 --generations 40
