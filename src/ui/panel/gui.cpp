@@ -49,6 +49,14 @@ const char* toggled_path(HotkeyAction action) {
   return action == HotkeyAction::toggle_blackout ? "/lighting/blackout" : nullptr;
 }
 
+// Returns the message without arguments that an action sends, or null.
+const char* sent_address(HotkeyAction action) {
+  if (action == HotkeyAction::reset) return "/transport/reset";
+  if (action == HotkeyAction::next_cue) return "/cue/go";
+  if (action == HotkeyAction::previous_cue) return "/cue/back";
+  return action == HotkeyAction::pause_cues ? "/cue/pause" : nullptr;
+}
+
 // Performs the hotkey actions that only need the context.
 void perform_in_context(HotkeyAction action, GuiContext& context) {
   switch (action) {
@@ -73,9 +81,6 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
     case HotkeyAction::panic:
       context.panic();
       break;
-    case HotkeyAction::reset:
-      context.send("/transport/reset");
-      break;
     case HotkeyAction::undo:
       context.undo();
       break;
@@ -84,6 +89,7 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
       break;
     default:
       if (const char* const path = toggled_path(action)) context.toggle(path);
+      if (const char* const address = sent_address(action)) context.send(address);
       break;
   }
 }
