@@ -271,6 +271,7 @@ TEST_F(CueShow, AResetKeepsTheCue) {
 TEST_F(CueShow, ASavedFileIsReadAgain) {
   Show show(options());
   send(show, "/cue/jump", "storm");
+  send(show, "/cue/pause");
   write(R"({"limber cues": 1, "cues": [{"name": "new"}, {"name": "calm"}, {"name": "storm"}, {"name": "last"}]})");
   run_while_ticking(show, [&] { EXPECT_TRUE(show.engine.reload_cues()); });
   EXPECT_EQ(current(show), 3) << "the number of the same cue in the new list";

@@ -199,9 +199,11 @@ Outcome MessageDispatcher::execute_path(const Message& message) {
   }
   const PropertyRef ref = known->second;
   if (ref.property == nullptr) {
-    return Outcome::rejected(
-        fmt::format("this is an object, not a property{}",
-                    hints_.consume() ? name_hint("", store_.table(ref.node).property_names()) : ""));
+    std::string error = fmt::format("this is an object, not a property{}",
+                                    hints_.consume() ? name_hint("", store_.table(ref.node).property_names()) : "");
+    // scenes have handlers of the address /cue that are older than this object
+    const bool may_be_handled = address == "/cue";
+    return may_be_handled ? Outcome::unknown(std::move(error)) : Outcome::rejected(std::move(error));
   }
   refs_.assign(1, ref);
   if (ref.property->kind == PropertyKind::action) return execute_action(message.args);

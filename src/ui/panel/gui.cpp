@@ -359,7 +359,8 @@ void Gui::draw_help() {
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("##help", nullptr, kOverlay | ImGuiWindowFlags_AlwaysAutoResize)) {
     // reduce the spacing and then the text size if there are too many lines for the window
-    const float lines = static_cast<float>(hotkeys_.all().size()) + 7;
+    constexpr float kOtherLines = 5.2F;  // the title, the mouse, two separators
+    const float lines = static_cast<float>(hotkeys_.all().size()) + kOtherLines;
     const float high = std::max(ImGui::GetFontSize(), imgui::font_height(*context_.fonts.code));
     const float line_space = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
     ImGui::SetWindowFontScale(std::clamp(line_space / high, 0.5F, 1.0F));
