@@ -92,7 +92,7 @@ void CueLoader::apply(const List& list, bool restart) {
 
 void CueLoader::report(const std::string& path, const std::string& why) const {
   const std::string text = fmt::format("{}: {}", printable(path), why);
-  log_error("{}. The cues that were loaded before stay", text);
+  log_error("{}; the cues that were loaded before stay", text);
   show_.link.push_out({Outgoing::Destination::error, {}, error_message("/cue", text)});
 }
 
