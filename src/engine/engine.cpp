@@ -38,7 +38,8 @@ Result<void> Engine::start() {
     if (Result<void> recorded = recording_.start(); !recorded) return recorded;
   }
   show_.presets.open(scenes_.read_presets(show_.options.scene));
-  show_.presets.suspend_saving(!show_.options.saves_presets);
+  show_.presets.suspend_saving(!show_.options.files.saves_presets);
+  if (Result<void> cues = cues_.start(); !cues) return cues;
   Result<void> started = scenes_.start();
   if (started) {
     publish();
@@ -90,6 +91,7 @@ void Engine::run_pass(bool may_step) {
   show_.session->dispatcher.begin_pass();
   (void)
       show_.session->transport.consume_rewind();  // drops a request that `--set /transport/rewind …` left at the start
+  (void)show_.session->cue_node.consume_request();  // the same for cues
   InputSource& input = *show_.input;
   input.execute_messages(may_step);
   times_.commands = watch.lap();
@@ -102,7 +104,7 @@ void Engine::run_pass(bool may_step) {
   health_.update(recovery_.owned_elsewhere());
   publish();
   make_value_snapshot();
-  if (show_.was_paused != show_.session->transport.paused()) show_.send_transport();
+  if (show_.outputs.sent_paused() != show_.session->transport.paused()) show_.send_transport();
   times_.snapshot = watch.lap();
   show_.presets.prepare(world());
   recovery_.update(scenes_.reloader().script_preset());
@@ -139,6 +141,7 @@ bool Engine::restart(std::optional<std::uint64_t> seed) {
   show_.scene_seed = world().seed();
   if (scenes_.reset()) {
     show_.undo_stack.clear();
+    show_.cues.set_state({});
     return true;
   }
   show_.overrides.restore(previous_overrides);
@@ -157,6 +160,7 @@ void Engine::begin_recording() {
   if (scenes_.reset()) {
     log_info("recording the take {}", printable(file));
     recording_.end_pass(false, true);
+    if (show_.cues.state() != CueState{}) recording_.record(message_of(show_.cues.state()), {}, false);
   } else {
     recording_.abandon();
     recording_.report_failure("the take was not started: the scene's file has an error");
@@ -168,6 +172,7 @@ void Engine::publish() {
   const History& history = show_.history;
   session.counters.publish();
   session.preset_node.publish();
+  session.cue_node.publish();
   const double rewindable = history.empty() ? 0 : session.world.time() - history.oldest_time();
   session.transport.publish(show_.pacer.speed_reached(), rewindable, static_cast<double>(history.bytes()) / (1u << 20u),
                             show_.pacer.lost_time());
@@ -181,6 +186,18 @@ void Engine::make_value_snapshot() {
   if (!snapshotter.make(store(), show_.link.snapshots.read(), live_input_.snapshot_requests())) return;
   show_.link.wake_network();
   show_.link.wake_query();
+}
+
+Result<void> Engine::change_scene(const std::string& file, std::optional<std::uint64_t> panics) {
+  Result<void> changed = scenes_.change_scene(file, panics);
+  if (changed) cues_.change_scene(file);
+  return changed;
+}
+
+std::vector<script::SourceFile> Engine::files() const {
+  std::vector<script::SourceFile> files = scenes_.files();
+  if (script::SourceFile cues = cues_.file(); !cues.path.empty()) files.push_back(std::move(cues));
+  return files;
 }
 
 void Engine::finish_saving() {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/cues/cue_loader.h"
 #include "engine/engine_options.h"
 #include "engine/input/live_input.h"
 #include "engine/output/health_monitor.h"
@@ -54,9 +55,7 @@ class Engine {
   /// Runs another scene file detached from the show, then replaces the session with it between two ticks and drops all
   /// overrides. If the scene fails, returns the error, and the show continues. [any but sim, during run()]
   /// `panics`: EngineLink::panics at the time of the request; the request is discarded if there was a panic since.
-  Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics = {}) {
-    return scenes_.change_scene(file, panics);
-  }
+  Result<void> change_scene(const std::string& file, std::optional<std::uint64_t> panics = {});
   /// Adds a model to the scene, as if the last line of its file loaded it: in a free place, with a unique name. The
   /// files of the last successful run are used, and all other objects stay as they are; resets and reloads keep the
   /// model, another scene drops it. `model`: that of the file `path`. Returns the name and place of its body, or an
@@ -71,8 +70,13 @@ class Engine {
   Result<void> play_take(const std::string& file, std::optional<std::uint64_t> stops = {}) {
     return playback_.play(file, stops);
   }
-  /// The source files to watch: a change of one of them calls for a reload. [any]
-  std::vector<script::SourceFile> files() const { return scenes_.files(); }
+  /// The files to watch: a change of one of them calls for a reload, or of the cue file for reload_cues(). [any]
+  std::vector<script::SourceFile> files() const;
+  /// Path of the cue file, whether it exists or not; empty: none. [any]
+  std::string cue_file() const { return cues_.file().path; }
+  /// Reads the cue file again. If it has an error, this is reported, and the cues stay. Returns false if it did
+  /// nothing, because a take plays or the show has ended. [any but sim, during run()]
+  bool reload_cues() { return cues_.reload(); }
 
   sim::World& world() { return show_.session->world; }
   Store& store() { return show_.session->store; }
@@ -123,6 +127,7 @@ class Engine {
   LiveInput live_input_{show_, executor_, rewinder_, recording_};
   RecoveryControl recovery_{show_};
   SceneRunner scenes_{show_, recording_, recovery_};
+  CueLoader cues_{show_, scenes_};
   TakePlayback playback_{show_, executor_, rewinder_, live_input_, scenes_, recording_, recovery_};
   HealthMonitor health_{show_};
   SavedStates saved_states_{show_};

@@ -30,13 +30,16 @@ struct EngineOptions {
   std::optional<double> duration;      ///< Ends at this simulated time, s.
   bool strict = false;                 ///< Ends at the first fault.
   bool print = true;                   ///< Scripts print to stdout; false: to stderr, because stdout is the output.
-  bool saves_presets = true;           ///< False: presets that scripts store are not written to the disk.
   std::string preset;                  ///< `--preset`: recalled before the first tick.
   std::string record;                  ///< Records a take to this file, from the start on.
   std::string replay;                  ///< Replays this take, which contains the scene and all input.
   bool current_scripts = false;        ///< A replay reads the scene from the disk, in its current state.
-  /// Folder of the lock files that make one program the owner of a scene's presets; empty: no locks.
-  std::string lock_folder;
+  struct Files {
+    std::string cues;           ///< `--cues`: file of the cues; empty: the one beside the scene, if it exists.
+    bool saves_presets = true;  ///< False: presets that scripts store are not written to the disk.
+    /// Folder of the lock files that make one program the owner of a scene's presets; empty: no locks.
+    std::string locks;
+  } files;
   struct Recovery {
     std::string folder;  ///< Folder of the recovery file, written while the show plays; empty: no recovery.
     std::chrono::milliseconds interval = RecoverySaver::kInterval;

@@ -18,7 +18,7 @@ struct SavedState {
 class SavedStates {
  public:
   explicit SavedStates(ShowState& show)
-      : show_(show), store_(show.overrides, show.undo_stack, show.presets, show.handler_queue) {}
+      : show_(show), store_(show.overrides, show.undo_stack, show.presets, show.cues, show.handler_queue) {}
 
   /// Copies the state. Memory that equals that of `previous` is shared with it; null: none.
   SavedState save(const SavedState* previous = nullptr);

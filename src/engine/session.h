@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/commands/message_dispatcher.h"
+#include "engine/cues/cue_node.h"
 #include "engine/edits/edit_node.h"
 #include "engine/output/counter_node.h"
 #include "engine/output/engine_link.h"
@@ -20,17 +21,19 @@
 namespace limber::engine {
 
 struct Session {
-  Session(EngineLink& link, Presets& presets, UndoStack& undo_stack, const sim::WorldSetup& setup,
-          bool lockstep = false)
+  Session(EngineLink& link, Presets& presets, const CuePlayer& cues, UndoStack& undo_stack,
+          const sim::WorldSetup& setup, bool lockstep = false)
       : world(store, setup),
         transport(world, link.health, lockstep),
         counters(store, link.counters),
         preset_node(world, presets),
+        cue_node(world, cues),
         edit_node(world, undo_stack),
         take_node(world),
         dispatcher(world, &presets),
         publisher(world, link.snapshots) {
     dispatcher.set_health(link.health);
+    dispatcher.set_cues(cues);
   }
 
   /// Runs the scene file. If `file` is empty, the world stays empty.
@@ -76,6 +79,7 @@ struct Session {
   Transport transport;
   CounterNode counters;
   PresetNode preset_node;
+  CueNode cue_node;
   EditNode edit_node;
   TakeNode take_node;
   MessageDispatcher dispatcher;

@@ -14,7 +14,7 @@ ShowState::ShowState(EngineLink& engine_link, EngineOptions engine_options)
 std::unique_ptr<Session> ShowState::new_session() {
   sim::WorldSetup setup;
   setup.thread_pool = thread_pool;
-  auto fresh = std::make_unique<Session>(link, presets, undo_stack, setup, options.lockstep);
+  auto fresh = std::make_unique<Session>(link, presets, cues, undo_stack, setup, options.lockstep);
   fresh->world.kinematics().set_static_parts_move(!rules.before_second_revision);
   return fresh;
 }
@@ -47,13 +47,19 @@ bool ShowState::restore_before(std::uint64_t tick) {
   return true;
 }
 
+void ShowState::set_cue_state(CueState state) {
+  cues.set_state(std::move(state));
+  session->cue_node.publish();
+}
+
 void ShowState::send_transport() {
-  was_paused = session->transport.paused();
+  const bool paused = session->transport.paused();
+  outputs.set_sent_paused(paused);
   output().push({Outgoing::Destination::event,
                  {},
                  {"/transport/state",
-                  {Arg::of(was_paused), Arg::of(static_cast<double>(session->world.tick())),
-                   Arg::of(session->world.time()), Arg::of(pacer.speed_reached())}}});
+                  {Arg::of(paused), Arg::of(static_cast<double>(session->world.tick())), Arg::of(session->world.time()),
+                   Arg::of(pacer.speed_reached())}}});
 }
 
 std::uint64_t ShowState::state_hash() const {

@@ -9,6 +9,7 @@
 
 #include "engine/background_writer.h"
 #include "engine/commands/handler_queue.h"
+#include "engine/cues/cue_player.h"
 #include "engine/edits/edit_scope.h"
 #include "engine/edits/overrides.h"
 #include "engine/engine_options.h"
@@ -49,6 +50,8 @@ struct ShowState {
   /// Restores the newest checkpoint before this tick and discards everything since, except presets. False, without a
   /// change, if there is none.
   bool restore_before(std::uint64_t tick);
+  /// Sets the state of the cues and publishes it, so that routes read it in this tick.
+  void set_cue_state(CueState state);
   /// Sends /transport/state.
   void send_transport();
   /// Hash of the world, the scene and the random number generators.
@@ -68,12 +71,12 @@ struct ShowState {
   UndoStack undo_stack{overrides};
   HandlerQueue handler_queue;            ///< Messages that wait for the scene's handlers.
   std::vector<Message> preset_requests;  ///< Preset commands of scripts in this tick.
-  History history{overrides, undo_stack, presets, handler_queue};
+  CuePlayer cues;
+  History history{overrides, undo_stack, presets, cues, handler_queue};
   script::CallLog call_log;
   std::unique_ptr<Session> session;
   std::string added;             ///< SceneOptions::added of this scene.
   std::uint64_t scene_seed = 0;  ///< The random seed after the scene's run.
-  bool was_paused = false;       ///< As last sent by send_transport().
 };
 
 }  // namespace limber::engine

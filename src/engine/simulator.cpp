@@ -15,6 +15,7 @@ void Simulator::simulate(bool running, InputSource& input, PhaseTimes& times) {
   system::Stopwatch watch;
   panic_.end_if_requested();
   if (running) show_.presets.advance(session.world);
+  if (running && !session.world.panic().on()) show_.cues.advance();
   call_handlers(input);
   if (running && session.scene != nullptr && !session.world.panic().on()) session.scene->tick(session.world.timestep());
   execute_preset_requests();

@@ -1,8 +1,10 @@
-// Fuzzes the readers of preset files and pattrstorage files. Checks that the result can be written, read and blended.
+// Fuzzes the readers of preset files, pattrstorage files and cue files. Checks that presets can be written, read and
+// blended, and that cues are within their limits.
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 
+#include "engine/cues/cue_list.h"
 #include "engine/presets/text.h"
 #include "fuzz/target.h"
 
@@ -40,6 +42,17 @@ void check_parsed(const limber::Result<limber::engine::ParsedPresets>& read) {
   must(again.ok() && again->problems.empty() && limber::engine::text_of(again->presets) == text);
 }
 
+void check_cues(const limber::Result<limber::engine::CueList>& cues) {
+  using limber::engine::Cue;
+  if (!cues) return must(!cues.error().empty());
+  must(cues->size() <= limber::engine::kMaxCues);
+  for (const Cue& cue : *cues) {
+    must(!cue.name.empty() && cue.time >= 0 && cue.messages.size() <= Cue::kMaxMessages);
+    must(!cue.follow || (*cue.follow >= 0 && *cue.follow <= Cue::kMaxFollowSeconds));
+    for (const limber::Message& message : limber::engine::messages_of(cue)) must(message.address.starts_with('/'));
+  }
+}
+
 }  // namespace
 
 // NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's name
@@ -47,5 +60,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   check_parsed(limber::engine::parse_presets(bytes));
   check_parsed(limber::engine::import_pattrstorage(bytes));
+  check_cues(limber::engine::parse_cues(bytes));
   return 0;
 }

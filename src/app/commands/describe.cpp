@@ -14,6 +14,7 @@
 #include "app/viewer/played_file.h"
 #include "base/log/output.h"
 #include "base/text.h"
+#include "engine/cues/cue_node.h"
 #include "engine/engine.h"
 #include "properties/property_text.h"
 #include "sim/fixtures/fixture_list.h"
@@ -85,7 +86,7 @@ std::vector<const PropertyTable*> described_classes() {
   }
   all.insert(all.end(), {&sim::Visuals::table(), &sim::Camera::table(), &sim::Appearance::table(), &sim::Shape::table(),
                          &sim::FixtureList::table(), &sim::Fixture::table(), &engine::Transport::table(),
-                         &engine::PresetNode::table(), &engine::EditNode::table(), &engine::TakeNode::table(),
+                         &engine::PresetNode::table(), &engine::CueNode::table(), &engine::EditNode::table(), &engine::TakeNode::table(),
                          &engine::CounterNode::table()});
   return all;
 }

@@ -53,7 +53,7 @@ engine::EngineOptions Evaluator::options_of(const experiments::Evaluation& evalu
   options.scene_options.seed = evaluation.seed;
   options.fast = true;
   options.print = false;
-  options.saves_presets = false;
+  options.files.saves_presets = false;
   options.duration = setup_.duration;
   for (std::size_t i = 0; i < std::min(parameters_.size(), evaluation.values.size()); i++) {
     const ParameterInfo& parameter = *parameters_[i];

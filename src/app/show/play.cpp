@@ -130,12 +130,13 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
   engine.ticks = options.ticks;
   engine.duration = options.duration;
   engine.preset = options.preset;
+  if (!options.run.cues.empty()) engine.files.cues = absolute_path(options.run.cues);
   engine.record = options.take.record;
   engine.replay = options.take.replay;
   engine.current_scripts = options.take.current_scripts;
   // batch runs, runs in lockstep, replays and films save no recovery file
   const std::string state = state_dir();
-  if (!state.empty()) engine.lock_folder = state + "/locks";
+  if (!state.empty()) engine.files.locks = state + "/locks";
   if (engine.in_real_time() && options.take.replay.empty() && !options.display.offline() && !state.empty())
     engine.recovery.folder = state + "/recovery";
   engine.recovery.restore = options.recover;

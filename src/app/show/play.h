@@ -45,11 +45,12 @@ struct SaveSceneOptions {
   bool overwrite = false;  ///< Replace the file if it exists.
 };
 
-/// Values that are set after the scene has run, and the file of its output.
+/// Values that are set after the scene has run, the file of its output, and its cues.
 struct RunOptions {
   std::vector<std::string> params;  ///< NAME=VALUE: parameters of the scene.
   std::vector<std::string> sets;    ///< PATH=VALUE
   std::string out;                  ///< File or folder for recorded columns and results; empty: none.
+  std::string cues;                 ///< File of the cues; empty: the one beside the scene.
 };
 
 /// Options of `play`, as typed.

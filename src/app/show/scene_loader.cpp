@@ -112,7 +112,9 @@ void SceneLoader::run(FileWatch& files) {
   std::vector<SceneRequest> requests;
   while (!stop_.load()) {
     if (waiting.empty()) wait(files);
-    const bool saved = !files.poll(FileWatch::Time::clock::now()).empty() || std::exchange(reload_pending_, false);
+    std::vector<std::string> saved_files = files.poll(FileWatch::Time::clock::now());
+    const bool cues_saved = reload_cues(saved_files);
+    const bool saved = !saved_files.empty() || std::exchange(reload_pending_, false);
     const bool rerun = rerun_.exchange(false);
     if (saved || rerun) {
       const bool reuse_files = !saved;
@@ -126,8 +128,15 @@ void SceneLoader::run(FileWatch& files) {
       scene_changed = handle(waiting.front());
       waiting.pop_front();
     }
-    if (saved || rerun || scene_changed) files.watch(engine_.files(), FileWatch::Time::clock::now());
+    if (saved || cues_saved || rerun || scene_changed) files.watch(engine_.files(), FileWatch::Time::clock::now());
   }
+}
+
+// Reads the cue file again if it was saved, and removes it from the list. Returns true if it did.
+bool SceneLoader::reload_cues(std::vector<std::string>& saved) {
+  if (std::erase(saved, engine_.cue_file()) == 0 && !cues_pending_) return false;
+  cues_pending_ = !engine_.reload_cues();
+  return true;
 }
 
 // returns the names of the folder's scenes without .lua, sorted
@@ -219,11 +228,12 @@ void SceneLoader::reject(const SceneRequest& request, const std::string& reason)
 
 void SceneLoader::wait(const FileWatch& files) {
   std::optional<std::chrono::nanoseconds> limit;
-  if (reload_pending_) limit = kReloadRetryInterval;
+  const bool pending = reload_pending_ || cues_pending_;
+  if (pending) limit = kReloadRetryInterval;
   if (const auto due = files.next_poll()) {
     const auto now = FileWatch::Time::clock::now();
     limit = std::min<std::chrono::nanoseconds>(std::max(*due, now) - now,
-                                               reload_pending_ ? kReloadRetryInterval : std::chrono::minutes(1));
+                                               pending ? kReloadRetryInterval : std::chrono::minutes(1));
   }
   std::array<system::PollEntry, 2> poll_entries{{{.fd = wake_.fd()}, {.fd = files.fd()}}};
   (void)system::wait_ready(poll_entries, limit);

@@ -50,6 +50,7 @@ class SceneLoader {
 
   void run(FileWatch& files);
   bool handle(const SceneRequest& request);
+  bool reload_cues(std::vector<std::string>& saved);
   bool play_take(const SceneRequest& request);
   bool handle_model(const SceneRequest& request);
   std::vector<std::string> scenes() const;
@@ -66,6 +67,7 @@ class SceneLoader {
   BoundedQueue<SceneRequest> requests_{64, std::size_t{1} << 16};
   system::Wake wake_;
   bool reload_pending_ = false;  // a file was saved while a take played; used by the thread only
+  bool cues_pending_ = false;    // the same of the cue file
   std::atomic<bool> stop_{false};
   std::atomic<bool> rerun_{false};
   std::thread thread_;

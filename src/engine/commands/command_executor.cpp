@@ -28,6 +28,9 @@ CommandExecutor::Execution CommandExecutor::execute(Message& message, const Comm
     source.record(message, origin, false);
   }
   if (outcome.kind == Outcome::Kind::take_request) outcome = source.request_take(message);
+  std::optional<CueRequest> cue_request = session.cue_node.consume_request();
+  if (outcome.kind == Outcome::Kind::cue_request) cue_request = {CueRequest::Kind::jump, message.args.front()};
+  if (cue_request) outcome = source.request_cue(*cue_request);
   report(outcome, message, origin);
   const bool has_handlers = session.scene != nullptr && session.scene->has_handlers();
   const std::size_t work = session.dispatcher.writes().size() + message.args.size() / kArgumentsPerWork;

@@ -114,6 +114,8 @@ MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
   entries_["/visuals/camera/projection"].handler = &MessageDispatcher::projection;
   entries_["/get"].handler = &MessageDispatcher::answer_get;
   entries_["/list/health"].handler = &MessageDispatcher::answer_health;
+  entries_["/list/cues"].handler = &MessageDispatcher::answer_cues;
+  entries_["/cue/jump"].handler = &MessageDispatcher::request_cue;
   entries_["/list/scenes"].handler = &MessageDispatcher::request_scene;
   entries_["/transport/scene"].handler = &MessageDispatcher::request_scene;
   for (const auto& [address, entry] : entries_) addresses_.push_back(address);
@@ -197,9 +199,11 @@ Outcome MessageDispatcher::execute_path(const Message& message) {
   }
   const PropertyRef ref = known->second;
   if (ref.property == nullptr) {
-    return Outcome::rejected(
-        fmt::format("this is an object, not a property{}",
-                    hints_.consume() ? name_hint("", store_.table(ref.node).property_names()) : ""));
+    std::string error = fmt::format("this is an object, not a property{}",
+                                    hints_.consume() ? name_hint("", store_.table(ref.node).property_names()) : "");
+    // scenes have handlers of the address /cue that are older than this object
+    const bool may_be_handled = address == "/cue";
+    return may_be_handled ? Outcome::unknown(std::move(error)) : Outcome::rejected(std::move(error));
   }
   refs_.assign(1, ref);
   if (ref.property->kind == PropertyKind::action) return execute_action(message.args);
@@ -422,6 +426,27 @@ Outcome MessageDispatcher::answer_health(const Message& message) {
   Message& answer = outcome.answers.emplace_back(Message{"/list/health", {}});
   if (health_ != nullptr) answer = health_->answer_message("/list/health");
   if (answer.args.empty()) answer.args.push_back(Arg::of(""));  // an answer must not look like a query
+  return outcome;
+}
+
+Outcome MessageDispatcher::answer_cues(const Message& message) {
+  if (!message.args.empty()) return Outcome::rejected("takes no arguments");
+  Outcome outcome = Outcome::answered();
+  Message& answer = outcome.answers.emplace_back(Message{"/list/cues", {}});
+  if (cues_ != nullptr) {
+    for (const Cue& cue : *cues_->list()) answer.args.push_back(Arg::of(std::string_view(cue.name)));
+  }
+  if (answer.args.empty()) answer.args.push_back(Arg::of(""));  // an answer must not look like a query
+  return outcome;
+}
+
+Outcome MessageDispatcher::request_cue(const Message& message) {
+  if (message.args.size() != 1 || message.args[0].kind == Arg::Kind::nil)
+    return Outcome::rejected("takes the name or the number of a cue; /list/cues lists them");
+  if (is_button_release(message.args)) return {};
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::cue_request;
+  outcome.error = "cues can be started in a running show only";  // used where there is no InputSource
   return outcome;
 }
 

@@ -16,6 +16,7 @@
 #include "engine/commands/query_handler.h"
 #include "engine/commands/selector.h"
 #include "engine/commands/special_addresses.h"
+#include "engine/cues/cue_player.h"
 #include "engine/output/health.h"
 #include "engine/presets/presets.h"
 #include "properties/catalog.h"
@@ -35,6 +36,8 @@ class MessageDispatcher {
 
   /// Sets the source of /list/health, which is empty without it.
   void set_health(const Health& health) { health_ = &health; }
+  /// Sets the source of /list/cues, which is empty without it.
+  void set_cues(const CuePlayer& cues) { cues_ = &cues; }
 
   /// Executes a message. Its effect on values is immediate.
   Outcome execute(const Message& message);
@@ -101,6 +104,8 @@ class MessageDispatcher {
   Outcome answer_list(const Message& message);
   Outcome request_scene(const Message& message);
   Outcome answer_health(const Message& message);
+  Outcome answer_cues(const Message& message);
+  Outcome request_cue(const Message& message);
   Outcome answer_get(const Message& message);
   Outcome reject_unsupported(const Message& message);
   Outcome execute_preset(const Message& message);
@@ -110,6 +115,7 @@ class MessageDispatcher {
   sim::World& world_;
   Presets* presets_;
   const Health* health_ = nullptr;
+  const CuePlayer* cues_ = nullptr;
   Store& store_;
   HintBudget hints_;
   PatternBudget pass_budget_{kPassWork};  // of this pass

@@ -16,6 +16,7 @@ struct Outcome {
     rejected,       ///< Rejected without a change; `error` is the reason.
     unknown,        ///< Unknown address; `error` suggests similar ones.
     take_request,   ///< A request about takes, which the engine executes at the end of the tick.
+    cue_request,    ///< A request to start the cue that its argument names.
     scene_request,  ///< A request about scenes, which needs file access: to be passed to EngineLink::on_scene_request.
   };
   Kind kind = Kind::applied;

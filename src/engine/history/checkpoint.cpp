@@ -44,6 +44,7 @@ std::unique_ptr<Checkpoint> CheckpointStore::capture(Session& session, const Che
   checkpoint->overrides = shared_overrides_.copy;
   checkpoint->undo = shared_undo_.copy;
   presets_.capture(checkpoint->presets);
+  checkpoint->cue = cues_.state();
   checkpoint->mouse_springs = session.dispatcher.mouse_springs();
   checkpoint->handler_queue = handler_queue_;
   return checkpoint;
@@ -55,6 +56,7 @@ void CheckpointStore::restore(Session& session, const Checkpoint& checkpoint) {
   overrides_.restore(*checkpoint.overrides);
   undo_.restore(*checkpoint.undo);
   presets_.restore(checkpoint.presets);
+  cues_.set_state(checkpoint.cue);
   shared_overrides_ = {checkpoint.overrides, overrides_.version()};
   shared_undo_ = {checkpoint.undo, undo_.version()};
   session.dispatcher.mouse_springs() = checkpoint.mouse_springs;

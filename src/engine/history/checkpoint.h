@@ -11,6 +11,7 @@
 #include "base/memory/page_store.h"
 #include "engine/commands/handler_queue.h"
 #include "engine/commands/mouse_springs.h"
+#include "engine/cues/cue_player.h"
 #include "engine/edits/overrides.h"
 #include "engine/edits/undo_stack.h"
 #include "engine/presets/presets.h"
@@ -51,6 +52,7 @@ struct Checkpoint {
   std::shared_ptr<const Overrides> overrides;
   std::shared_ptr<const UndoStack::State> undo;
   Presets::State presets;
+  CueState cue;
   MouseSprings mouse_springs;
   HandlerQueue handler_queue;
   PassLog passes;
@@ -58,8 +60,8 @@ struct Checkpoint {
 
 class CheckpointStore {
  public:
-  CheckpointStore(Overrides& overrides, UndoStack& undo, Presets& presets, HandlerQueue& handler_queue)
-      : overrides_(overrides), undo_(undo), presets_(presets), handler_queue_(handler_queue) {}
+  CheckpointStore(Overrides& overrides, UndoStack& undo, Presets& presets, CuePlayer& cues, HandlerQueue& handler_queue)
+      : overrides_(overrides), undo_(undo), presets_(presets), cues_(cues), handler_queue_(handler_queue) {}
 
   /// Captures a checkpoint. Memory that equals that of `previous` is shared with it; null: none.
   std::unique_ptr<Checkpoint> capture(Session& session, const Checkpoint* previous);
@@ -83,6 +85,7 @@ class CheckpointStore {
   Overrides& overrides_;
   UndoStack& undo_;
   Presets& presets_;
+  CuePlayer& cues_;
   HandlerQueue& handler_queue_;
   PageStore pages_;
   std::vector<std::unique_ptr<Checkpoint>> free_;

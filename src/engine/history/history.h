@@ -30,8 +30,8 @@ class History {
   static constexpr double kCheckpointInterval = 1;                  ///< Simulated seconds between checkpoints.
   static constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  ///< Memory limit of the history, in bytes.
 
-  History(Overrides& overrides, UndoStack& undo, Presets& presets, HandlerQueue& handler_queue)
-      : store_(overrides, undo, presets, handler_queue) {}
+  History(Overrides& overrides, UndoStack& undo, Presets& presets, CuePlayer& cues, HandlerQueue& handler_queue)
+      : store_(overrides, undo, presets, cues, handler_queue) {}
 
   /// Discards everything: the state from now on is the oldest that can be restored. `why`: reason, for limit_reason().
   void clear(std::string_view why);

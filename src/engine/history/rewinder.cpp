@@ -143,6 +143,7 @@ void Rewinder::resimulate(RecordedPass& pass) {
   simulator_.simulate(input.advances_time(pass.running), input, unused_times);
   session.world.requests().reset = false;  // the reset failed in the original run
   session.preset_node.publish();
+  session.cue_node.publish();
   if (session.scene != nullptr) session.scene->collect_garbage();
 }
 

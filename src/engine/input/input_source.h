@@ -8,6 +8,7 @@
 
 #include "base/message.h"
 #include "engine/commands/outcome.h"
+#include "engine/cues/cue_player.h"
 #include "engine/takes/take.h"
 #include "engine/transport.h"
 #include "script/scene/sources.h"
@@ -37,6 +38,9 @@ class InputSource {
   virtual Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) = 0;
   /// Executes a request about takes.
   virtual Outcome request_take(const Message& message) = 0;
+  /// Accepts a request of a controller to start or pause cues. The default ignores it, because the messages of cues
+  /// are recorded inputs themselves.
+  virtual Outcome request_cue(const CueRequest&) { return {}; }
 
   /// Input of a run of the scene.
   struct SceneFiles {

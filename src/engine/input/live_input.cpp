@@ -79,6 +79,8 @@ void LiveInput::execute_messages(bool may_step) {
     show_.link.command_queue.drain(commands_);
     next_command_ = 0;
   }
+  // after the messages, which may have requested the tick
+  cues_.run_due(may_step, edit_scope, *this);
 }
 
 // Measures the age of a panic in real time, or with --fast and --lockstep in simulated time, so that equal runs have
@@ -124,7 +126,7 @@ int LiveInput::execute(Command& command, EditScope& edit_scope) {
     }
     if (step_requests_.postpone(message, command.origin)) continue;
     const CommandExecutor::Execution execution = executor_.execute(message, command.origin, *this);
-    work += execution.work;
+    work += execution.work + cues_.run_requested(command.origin, *this);
     if (execution.applied && is_step) step_requests_.add(command.origin);
     if (execution.rewound) edit_scope.begin(command.origin);  // the undo stack was restored
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/commands/urgent.h"
+#include "engine/cues/cue_runner.h"
 #include "engine/history/rewinder.h"
 #include "engine/takes/recording.h"
 
@@ -82,7 +83,7 @@ class LiveInput final : public InputSource {
   static constexpr int kPassWork = 8192;
 
   LiveInput(ShowState& show, CommandExecutor& executor, Rewinder& rewinder, TakeRecording& recording)
-      : show_(show), executor_(executor), rewinder_(rewinder), recording_(recording) {}
+      : show_(show), executor_(executor), rewinder_(rewinder), recording_(recording), cues_(show, executor) {}
 
   void execute_messages(bool may_step) override;
   bool advances_time(bool may_step) override;
@@ -92,6 +93,7 @@ class LiveInput final : public InputSource {
   void record(const Message& message, const CommandOrigin& origin, bool evaluate) override;
   Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
   Outcome request_take(const Message& message) override { return recording_.request(message); }
+  Outcome request_cue(const CueRequest& request) override { return cues_.request(request); }
   bool must_rerun() override;
   bool is_paced() const override;
   void end_pass() override;
@@ -119,6 +121,7 @@ class LiveInput final : public InputSource {
   CommandExecutor& executor_;
   Rewinder& rewinder_;
   TakeRecording& recording_;
+  CueRunner cues_;
   std::vector<Command> commands_;
   std::size_t next_command_ = 0;                  // index of the first command that is not executed
   std::uint64_t snapshot_requests_of_batch_ = 0;  // value snapshot requests made before commands_ was drained

@@ -26,6 +26,10 @@ void RecordedInput::execute(std::span<InputRecord> inputs) {
 
 // Executes an internal event. Returns false for an ordinary message.
 bool RecordedInput::execute_event(const Message& message) {
+  if (std::optional<CueState> cue = cue_state_of(message)) {
+    show_.set_cue_state(std::move(*cue));
+    return true;
+  }
   const std::optional<TakeEvent> event = event_of(message);
   if (!event) return false;
   if (event->kind == TakeEvent::Kind::panic_settled) show_.session->world.panic().end_first_second();

@@ -131,6 +131,9 @@ class Outputs {
   Output& current() { return *current_; }
   LiveOutput& live() { return live_; }
   const LiveOutput& live() const { return live_; }
+  /// The state of pause that was sent last in /transport/state.
+  bool sent_paused() const { return sent_paused_; }
+  void set_sent_paused(bool paused) { sent_paused_ = paused; }
 
   /// While an object of this class exists, the muted output is connected, and this thread neither logs nor prints.
   class Muted {
@@ -149,6 +152,7 @@ class Outputs {
   LiveOutput live_;
   MutedOutput muted_;
   Output* current_ = &live_;
+  bool sent_paused_ = false;
 };
 
 }  // namespace limber::engine

@@ -219,7 +219,7 @@ Result<void> SceneRunner::apply_initial_overrides() {
 
 Presets::Bank SceneRunner::read_presets(const std::string& scene) {
   PresetFile::WriteAccess access =
-      PresetFile::write_access_for(scene, show_.options.lock_folder, !show_.options.recovery.folder.empty());
+      PresetFile::write_access_for(scene, show_.options.files.locks, !show_.options.recovery.folder.empty());
   // called by the thread that writes the file: not through Output, which belongs to the simulation thread
   return Presets::read(show_.writer, scene, std::move(access), [&link = show_.link](const std::string& why) {
     link.push_out({Outgoing::Destination::error, {}, error_message("/preset/store", why)});

@@ -174,7 +174,7 @@ Result<void> TakePlayback::check(TakePlayer& player) {
   options.package_paths = player.initial_state().package_paths;
   options.limits = replay_limits(true);
   options.sources = player.sources(runs.front());
-  Session session(show_.link, show_.presets, show_.undo_stack, {});  // never steps
+  Session session(show_.link, show_.presets, show_.cues, show_.undo_stack, {});  // never steps
   return session.run_detached(player.initial_state().scene, scenes_.host(), options);
 }
 
@@ -187,6 +187,7 @@ std::unique_ptr<Session> TakePlayback::begin_in_show(std::unique_ptr<TakePlayer>
   show_.added.clear();  // the take has its own
   show_.overrides.clear();
   show_.undo_stack.clear();
+  show_.cues.set_state({});
   presets_after_ = show_.presets.exchange({});
   if (presets_after_.file != bank.file) std::swap(presets_after_, bank);
   if (show_.session->scene != nullptr) show_.session->scene->disable_jit();

@@ -49,6 +49,14 @@ const char* toggled_path(HotkeyAction action) {
   return action == HotkeyAction::toggle_blackout ? "/lighting/blackout" : nullptr;
 }
 
+// Returns the message without arguments that an action sends, or null.
+const char* sent_address(HotkeyAction action) {
+  if (action == HotkeyAction::reset) return "/transport/reset";
+  if (action == HotkeyAction::next_cue) return "/cue/go";
+  if (action == HotkeyAction::previous_cue) return "/cue/back";
+  return action == HotkeyAction::pause_cues ? "/cue/pause" : nullptr;
+}
+
 // Performs the hotkey actions that only need the context.
 void perform_in_context(HotkeyAction action, GuiContext& context) {
   switch (action) {
@@ -73,9 +81,6 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
     case HotkeyAction::panic:
       context.panic();
       break;
-    case HotkeyAction::reset:
-      context.send("/transport/reset");
-      break;
     case HotkeyAction::undo:
       context.undo();
       break;
@@ -84,6 +89,7 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
       break;
     default:
       if (const char* const path = toggled_path(action)) context.toggle(path);
+      if (const char* const address = sent_address(action)) context.send(address);
       break;
   }
 }
@@ -353,7 +359,8 @@ void Gui::draw_help() {
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("##help", nullptr, kOverlay | ImGuiWindowFlags_AlwaysAutoResize)) {
     // reduce the spacing and then the text size if there are too many lines for the window
-    const float lines = static_cast<float>(hotkeys_.all().size()) + 7;
+    constexpr float kOtherLines = 5.2F;  // the title, the mouse, two separators
+    const float lines = static_cast<float>(hotkeys_.all().size()) + kOtherLines;
     const float high = std::max(ImGui::GetFontSize(), imgui::font_height(*context_.fonts.code));
     const float line_space = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
     ImGui::SetWindowFontScale(std::clamp(line_space / high, 0.5F, 1.0F));

@@ -1,0 +1,216 @@
+// Parses cue files.
+#include "engine/cues/cue_list.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "base/text.h"
+#include "engine/presets/presets.h"
+
+namespace limber::engine {
+
+namespace {
+
+using CueJson = nlohmann::json;
+
+constexpr const char* kCueVersionKey = "limber cues";
+constexpr int kCueVersion = 1;
+constexpr int kMaxCueDepth = 8;  // of nested values
+constexpr std::array<std::string_view, 7> kCueFields = {"name",     "preset", "time", "easing",
+                                                        "messages", "follow", "note"};
+
+std::string line_of(std::string_view text, std::size_t byte) {
+  const std::string_view before = text.substr(0, std::min(byte, text.size()));
+  return fmt::format("line {}", 1 + std::ranges::count(before, '\n'));
+}
+
+// Parses JSON. The error names the line.
+Result<CueJson> parse_json(std::string_view text) {
+  bool too_deep = false;
+  const auto limit_depth = [&](int depth, CueJson::parse_event_t, CueJson&) {
+    too_deep = too_deep || depth > kMaxCueDepth;
+    return depth <= kMaxCueDepth;
+  };
+  try {
+    CueJson json = CueJson::parse(text, limit_depth);
+    if (too_deep) return Error{"its values are nested too deeply"};
+    return json;
+  } catch (const CueJson::parse_error& error) {
+    return Error{fmt::format("{}: not valid JSON; a comma, a quote or a bracket is missing or too much",
+                             line_of(text, error.byte))};
+  } catch (const CueJson::exception&) {
+    return Error{"not valid JSON: a number is too large"};
+  }
+}
+
+// Parses one cue. Errors begin with the name of the field.
+class CueParser {
+ public:
+  Result<Cue> parse(const CueJson& json) {
+    if (!json.is_object()) return Error{"must be an object, such as {\"name\": \"opening\"}"};
+    if (const Result<void> known = check_fields(json); !known) return Error{known.error()};
+    for (const Result<void>& field : {parse_name(json), parse_preset(json), parse_messages(json), parse_follow(json)}) {
+      if (!field) return Error{field.error()};
+    }
+    return std::move(cue_);
+  }
+
+ private:
+  static Result<void> check_fields(const CueJson& json) {
+    for (const auto& item : json.items()) {
+      if (std::ranges::find(kCueFields, item.key()) != kCueFields.end()) continue;
+      const std::string hint = name_hint(item.key(), kCueFields);
+      return Error{fmt::format("there is no field '{}'{}", printable(shortened(item.key(), 100)), hint)};
+    }
+    return {};
+  }
+
+  // Returns the value of a field; null if it isn't given or is null.
+  static const CueJson* find(const CueJson& json, const char* field) {
+    const auto found = json.find(field);
+    return found == json.end() || found->is_null() ? nullptr : &*found;
+  }
+
+  static Result<void> parse_text(const CueJson& json, const char* field, std::string& to) {
+    const CueJson* const value = find(json, field);
+    if (value == nullptr) return {};
+    if (!value->is_string()) return Error{fmt::format("{}: must be a text in quotes", field)};
+    to = value->get<std::string>();
+    if (to.size() > Cue::kMaxText) return Error{fmt::format("{}: must have at most {} bytes", field, Cue::kMaxText)};
+    return {};
+  }
+
+  Result<void> parse_name(const CueJson& json) {
+    if (Result<void> text = parse_text(json, "name", cue_.name); !text) return text;
+    if (const auto fault = name_error(cue_.name)) return Error{fmt::format("name: {}", *fault)};
+    return parse_text(json, "note", cue_.note);
+  }
+
+  Result<void> parse_preset(const CueJson& json) {
+    if (Result<void> text = parse_text(json, "preset", cue_.preset); !text) return text;
+    if (const CueJson* const time = find(json, "time")) {
+      const double seconds = time->is_number() ? time->get<double>() : -1;
+      if (!(seconds >= 0 && seconds <= Presets::kMaxMorphSeconds))
+        return Error{fmt::format("time: must be a number of seconds from 0 to {}", Presets::kMaxMorphSeconds)};
+      cue_.time = seconds;
+    }
+    std::string easing;
+    if (Result<void> text = parse_text(json, "easing", easing); !text) return text;
+    if (easing.empty()) return {};
+    const std::optional<Easing> known = easing_of(easing);
+    if (!known)
+      return Error{fmt::format("easing: unknown easing '{}'; expected one of: {}", printable(shortened(easing, 100)),
+                               easing_names())};
+    cue_.easing = *known;
+    return {};
+  }
+
+  Result<void> parse_follow(const CueJson& json) {
+    const CueJson* const follow = find(json, "follow");
+    if (follow == nullptr) return {};
+    const double seconds = follow->is_number() ? follow->get<double>() : -1;
+    if (!(seconds >= 0 && seconds <= Cue::kMaxFollowSeconds))
+      return Error{fmt::format("follow: must be a number of seconds from 0 to {}, or null", Cue::kMaxFollowSeconds)};
+    cue_.follow = seconds;
+    return {};
+  }
+
+  Result<void> parse_messages(const CueJson& json) {
+    const CueJson* const messages = find(json, "messages");
+    if (messages == nullptr) return {};
+    if (!messages->is_array()) return Error{"messages: must be a list, such as [[\"/lighting/blackout\", 1]]"};
+    if (messages->size() > Cue::kMaxMessages)
+      return Error{fmt::format("messages: at most {} in a cue; split it into several cues", Cue::kMaxMessages)};
+    for (const CueJson& message : *messages) {
+      Result<Message> parsed = parse_message(message);
+      if (!parsed) return Error{fmt::format("messages: {}: {}", cue_.messages.size() + 1, parsed.error())};
+      cue_.messages.push_back(std::move(*parsed));
+    }
+    return {};
+  }
+
+  static Result<Message> parse_message(const CueJson& json) {
+    if (!json.is_array() || json.empty() || !json[0].is_string())
+      return Error{"must be a list of an address and its values, such as [\"/lighting/blackout\", 1]"};
+    Message message{json[0].get<std::string>(), {}};
+    const std::string address = normalized_name(message.address);
+    if (!address.starts_with('/') || address.size() > Cue::kMaxText || printable(address) != address)
+      return Error{
+          fmt::format("'{}' is not an address; it must begin with /", printable(shortened(message.address, 100)))};
+    if (address.starts_with("/cue/"))
+      return Error{"a cue can't control the cue list; set follow to continue with the next cue"};
+    if (json.size() > Cue::kMaxArguments + 1)
+      return Error{fmt::format("at most {} values in a message", Cue::kMaxArguments)};
+    for (std::size_t i = 1; i < json.size(); i++) {
+      std::optional<Arg> arg = arg_of(json[i]);
+      if (!arg) return Error{fmt::format("value {} must be a number, true, false, a short text or null", i)};
+      message.args.push_back(std::move(*arg));
+    }
+    return message;
+  }
+
+  static std::optional<Arg> arg_of(const CueJson& json) {
+    if (json.is_null()) return Arg{};
+    if (json.is_boolean()) return Arg::of(json.get<bool>());
+    if (json.is_number() && std::isfinite(json.get<double>())) return Arg::of(json.get<double>());
+    if (json.is_string() && json.get_ref<const std::string&>().size() <= Cue::kMaxText)
+      return Arg::of(std::string_view(json.get_ref<const std::string&>()));
+    return std::nullopt;
+  }
+
+  Cue cue_;
+};
+
+// Returns "cue 3", or "cue 3 'sunset'".
+std::string cue_text(std::size_t number, const CueJson& json) {
+  const bool named = json.is_object() && json.contains("name") && json["name"].is_string();
+  if (!named) return fmt::format("cue {}", number);
+  return fmt::format("cue {} '{}'", number, printable(shortened(json["name"].get<std::string>(), 100)));
+}
+
+Result<void> check_header(const CueJson& json) {
+  const bool has_version = json.is_object() && json.contains(kCueVersionKey) && json[kCueVersionKey].is_number();
+  if (!has_version || !json.contains("cues") || !json["cues"].is_array())
+    return Error{fmt::format("not a cue file; expected {{\"{}\": {}, \"cues\": [ … ]}}", kCueVersionKey, kCueVersion)};
+  if (json[kCueVersionKey].get<double>() > kCueVersion)
+    return Error{
+        fmt::format("it was written by a newer version of Limber; \"{}\" must be {}", kCueVersionKey, kCueVersion)};
+  if (json["cues"].size() > kMaxCues) return Error{fmt::format("at most {} cues", kMaxCues)};
+  return {};
+}
+
+}  // namespace
+
+Result<CueList> parse_cues(std::string_view text) {
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return CueList{};
+  const Result<CueJson> json = parse_json(text);
+  if (!json) return Error{json.error()};
+  if (const Result<void> header = check_header(*json); !header) return Error{header.error()};
+  CueList cues;
+  for (const CueJson& entry : (*json)["cues"]) {
+    const std::string place = cue_text(cues.size() + 1, entry);
+    Result<Cue> cue = CueParser().parse(entry);
+    if (!cue) return Error{fmt::format("{}: {}", place, cue.error())};
+    if (std::ranges::find(cues, cue->name, &Cue::name) != cues.end())
+      return Error{fmt::format("{}: name: another cue has the same name", place)};
+    cues.push_back(std::move(*cue));
+  }
+  return cues;
+}
+
+std::vector<Message> messages_of(const Cue& cue) {
+  std::vector<Message> messages;
+  if (!cue.preset.empty()) {
+    const std::string easing = easings()[static_cast<std::size_t>(cue.easing)];
+    messages.push_back({"/preset/recall", {Arg::of(std::string_view(cue.preset)), Arg::of(cue.time), Arg::of(easing)}});
+  }
+  messages.insert(messages.end(), cue.messages.begin(), cue.messages.end());
+  return messages;
+}
+
+}  // namespace limber::engine

@@ -1,0 +1,96 @@
+// CuePlayer: requests, and the encoding of its state.
+#include "engine/cues/cue_player.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+
+namespace limber::engine {
+
+namespace {
+
+constexpr double kCueEvent = 3;  // after the kinds of TakeEvent, which have another number of arguments
+constexpr std::size_t kCueEventArgs = 5;
+constexpr double kMaxCueTicks = 2e9;
+
+}  // namespace
+
+void CuePlayer::set_list(std::shared_ptr<const CueList> list, std::string file) {
+  list_ = std::move(list);
+  file_ = std::move(file);
+  names_.clear();
+  for (const Cue& cue : *list_) names_ += (names_.empty() ? "" : "\n") + cue.name;
+}
+
+std::uint32_t CuePlayer::position() const {
+  const auto count = static_cast<std::uint32_t>(list_->size());
+  if (state_.number == 0) return 0;
+  if (state_.number <= count && (*list_)[state_.number - 1].name == state_.name) return state_.number;
+  const auto found = std::ranges::find(*list_, state_.name, &Cue::name);
+  if (found != list_->end()) return static_cast<std::uint32_t>(found - list_->begin()) + 1;
+  return std::min(state_.number, count);
+}
+
+Result<std::size_t> CuePlayer::target(const CueRequest& request) const {
+  if (list_->empty()) {
+    return Error{file_.empty() ? std::string("there are no cues; put them into a .cues.json file beside the scene")
+                               : fmt::format("there are no cues; write them to {}", printable(file_))};
+  }
+  const std::uint32_t now = position();
+  switch (request.kind) {
+    case CueRequest::Kind::go:
+      if (now >= list_->size()) return Error{"the last cue has run; /cue/jump 1 starts again"};
+      return now;
+    case CueRequest::Kind::back:
+      if (now < 2) return Error{"there is no cue before this one"};
+      return now - 2;
+    default:
+      return find(request.value);
+  }
+}
+
+Result<std::size_t> CuePlayer::find(const Arg& cue) const {
+  std::optional<double> number = cue.number;
+  if (cue.is_text()) {
+    const auto found = std::ranges::find(*list_, cue.text, &Cue::name);
+    if (found != list_->end()) return static_cast<std::size_t>(found - list_->begin());
+    number = parse_number(cue.text);
+  }
+  if (!number) {
+    std::vector<std::string_view> names;
+    for (const Cue& known : *list_) names.push_back(known.name);
+    return Error{
+        fmt::format("there is no cue '{}'{}", printable(shortened(cue.text, 100)), name_hint(cue.text, names))};
+  }
+  if (!(*number >= 1 && *number <= static_cast<double>(list_->size()) && *number == std::floor(*number)))
+    return Error{fmt::format("the number of a cue must be 1 to {}, got {}", list_->size(), number_text(*number))};
+  return static_cast<std::size_t>(*number) - 1;
+}
+
+Message message_of(const CueState& state) {
+  return {"",
+          {Arg::of(kCueEvent), Arg::of(static_cast<double>(state.number)),
+           Arg::of(state.ticks ? static_cast<double>(*state.ticks) : -1.0), Arg::of(state.paused),
+           Arg::of(std::string_view(state.name))}};
+}
+
+std::optional<CueState> cue_state_of(const Message& message) {
+  const std::vector<Arg>& args = message.args;
+  if (!message.address.empty() || args.size() != kCueEventArgs || args[0].number != kCueEvent) return std::nullopt;
+  if (!std::ranges::all_of(args.begin(), args.begin() + 4, &Arg::is_numeric) || !args[4].is_text()) return std::nullopt;
+  const double number = args[1].number;
+  const double ticks = args[2].number;
+  if (!(number >= 0 && number <= kMaxCues) || !(ticks >= -1 && ticks <= kMaxCueTicks) ||
+      args[4].text.size() > Cue::kMaxText)
+    return std::nullopt;
+  CueState state{static_cast<std::uint32_t>(number), args[4].text, {}, args[3].number != 0};
+  if (ticks >= 0) state.ticks = static_cast<std::uint32_t>(ticks);
+  return state;
+}
+
+}  // namespace limber::engine

@@ -1,0 +1,110 @@
+// The format of cue files, and the errors in them.
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "engine/cues/cue_list.h"
+
+namespace limber::engine::test {
+namespace {
+
+std::string with_cue(const std::string& fields) {
+  return "{\"limber cues\": 1, \"cues\": [{\"name\": \"first\"}, {" + fields + "}]}";
+}
+
+std::string fault_of(const std::string& text) {
+  const Result<CueList> cues = parse_cues(text);
+  return cues ? "" : cues.error();
+}
+
+TEST(CueFile, ReadsEveryField) {
+  const Result<CueList> cues = parse_cues(with_cue(
+      R"("name": "storm", "preset": "dark", "time": 2.5, "easing": "in", "follow": 0, "note": "bring the fog",
+         "messages": [["/lighting/blackout", true], ["/mocap/play", "dancer", 1, null]])"));
+  ASSERT_TRUE(cues.ok()) << cues.error();
+  ASSERT_EQ(cues->size(), 2u);
+  const Cue& first = (*cues)[0];
+  EXPECT_EQ(first.preset, "");
+  EXPECT_FALSE(first.follow.has_value());
+  EXPECT_TRUE(messages_of(first).empty());
+  const Cue& cue = (*cues)[1];
+  EXPECT_EQ(cue.note, "bring the fog");
+  EXPECT_EQ(cue.follow, 0.0);
+  const std::vector<Message> messages = messages_of(cue);
+  ASSERT_EQ(messages.size(), 3u);
+  EXPECT_EQ(messages[0].address, "/preset/recall");
+  ASSERT_EQ(messages[0].args.size(), 3u);
+  EXPECT_EQ(messages[0].args[0].text, "dark");
+  EXPECT_EQ(messages[0].args[1].number, 2.5);
+  EXPECT_EQ(messages[0].args[2].text, "in");
+  EXPECT_EQ(messages[1].args[0].kind, Arg::Kind::boolean);
+  ASSERT_EQ(messages[2].args.size(), 3u);
+  EXPECT_EQ(messages[2].args[0].text, "dancer");
+  EXPECT_EQ(messages[2].args[2].kind, Arg::Kind::nil);
+}
+
+TEST(CueFile, AnEmptyFileHasNoCues) {
+  const Result<CueList> cues = parse_cues(" \n");
+  ASSERT_TRUE(cues.ok());
+  EXPECT_TRUE(cues->empty());
+}
+
+TEST(CueFile, ErrorsNameTheCueAndTheField) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"("name": "")", "cue 2 '': name: "},
+      {R"("preset": "a")", "cue 2: name: "},
+      {R"("name": "first")", "cue 2 'first': name: another cue has the same name"},
+      {R"("name": "b", "preset": 3)", "cue 2 'b': preset: must be a text"},
+      {R"("name": "b", "time": -1)", "cue 2 'b': time: must be a number of seconds from 0 to 86400"},
+      {R"("name": "b", "time": "long")", "cue 2 'b': time: must be a number"},
+      {R"("name": "b", "easing": "quick")", "cue 2 'b': easing: unknown easing 'quick'; expected one of: linear"},
+      {R"("name": "b", "follow": 1e9)", "cue 2 'b': follow: must be"},
+      {R"("name": "b", "folow": 1)", "cue 2 'b': there is no field 'folow'; did you mean 'follow'?"},
+      {R"("name": "b", "messages": "/x")", "cue 2 'b': messages: must be a list"},
+      {R"("name": "b", "messages": [["/a"], "/b"])", "cue 2 'b': messages: 2: must be a list of an address"},
+      {R"("name": "b", "messages": [["a"]])", "cue 2 'b': messages: 1: 'a' is not an address"},
+      {R"("name": "b", "messages": [["/a", [1]]])", "cue 2 'b': messages: 1: value 1 must be a number"},
+      {R"("name": "b", "messages": [["/Cue/go"]])", "cue 2 'b': messages: 1: a cue can't control the cue list"},
+  };
+  for (const auto& [fields, error] : cases) {
+    const std::string fault = fault_of(with_cue(fields));
+    EXPECT_TRUE(fault.starts_with(error)) << fields << ": " << fault;
+  }
+}
+
+TEST(CueFile, ErrorsOfTheFile) {
+  EXPECT_TRUE(fault_of("{\n\"limber cues\": 1\n\"cues\": []}").starts_with("line 3: not valid JSON"));
+  EXPECT_TRUE(fault_of("[]").starts_with("not a cue file; expected"));
+  EXPECT_TRUE(fault_of("{\"limber presets\": 1, \"cues\": []}").starts_with("not a cue file"));
+  EXPECT_TRUE(fault_of("{\"limber cues\": 2, \"cues\": []}").starts_with("it was written by a newer version"));
+  EXPECT_EQ(fault_of("{\"limber cues\": 1, \"cues\": [3]}"),
+            "cue 1: must be an object, such as {\"name\": \"opening\"}");
+  EXPECT_NE(fault_of(std::string(100, '[') + std::string(100, ']')), "");
+  EXPECT_NE(fault_of("{\"limber cues\": 1, \"cues\": [{\"name\": \"a\", \"time\": 1e999}]}"), "");
+}
+
+TEST(CueFile, TheExampleOfTheManualIsValid) {
+  std::ifstream in(LIMBER_SOURCE_DIR "/docs/howto/cues.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  const std::string fence = "```json\n";
+  const std::size_t begin = page.find(fence);
+  ASSERT_NE(begin, page.npos);
+  const std::string block = page.substr(begin + fence.size(), page.find("\n```", begin) - begin - fence.size());
+  const Result<CueList> cues = parse_cues(block);
+  ASSERT_TRUE(cues.ok()) << cues.error();
+  EXPECT_EQ(cues->size(), 4u);
+}
+
+TEST(CueFile, IsBounded) {
+  std::string many;
+  for (std::size_t i = 0; i <= kMaxCues; i++)
+    many += (i == 0 ? "" : ",") + ("{\"name\": \"" + std::to_string(i) + "\"}");
+  EXPECT_EQ(fault_of("{\"limber cues\": 1, \"cues\": [" + many + "]}"), "at most 1000 cues");
+  std::string messages;
+  for (std::size_t i = 0; i <= Cue::kMaxMessages; i++) messages += i == 0 ? "[\"/a\"]" : ",[\"/a\"]";
+  EXPECT_TRUE(fault_of(with_cue("\"name\": \"b\", \"messages\": [" + messages + "]"))
+                  .starts_with("cue 2 'b': messages: at most 256 in a cue"));
+}
+
+}  // namespace
+}  // namespace limber::engine::test
