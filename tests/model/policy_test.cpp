@@ -206,9 +206,9 @@ TEST(Policy, AFailedEvaluationChangesNothing) {
   Vector outputs{7};
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(network->evaluate(Vector{nan}, hidden, outputs, workspace).error(),
-            "observation 1 is nan; expected a finite number");
+            "observation 1 is not finite, or larger than 3e38");
   EXPECT_EQ(network->evaluate(Vector{1e300}, hidden, outputs, workspace).error(),
-            "observation 1 is 1e+300; expected a finite number");
+            "observation 1 is not finite, or larger than 3e38");
   EXPECT_EQ(network->evaluate(Vector{1}, hidden, outputs, workspace).error(),
             "action 1 is not finite: the observations or the weights are too large");
   EXPECT_EQ(hidden[0], 0.5f);

@@ -84,8 +84,7 @@ Result<void> PolicyNetwork::evaluate(std::span<const double> inputs, std::span<f
   float* const next_hidden = by_hidden + stride;
   for (std::size_t i = 0; i < inputs_; i++) {
     x[i] = static_cast<float>(inputs[i]);
-    if (!std::isfinite(x[i]))
-      return Error{fmt::format("observation {} is {}; expected a finite number", i + 1, inputs[i])};
+    if (!std::isfinite(x[i])) return Error{fmt::format("observation {} is not finite, or larger than 3e38", i + 1)};
   }
   std::size_t width = inputs_;
   for (const PolicyStep& step : steps_) {
