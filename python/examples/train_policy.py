@@ -1,6 +1,6 @@
 """Trains a policy for the legs of a quadruped with a small CMA-ES, and exports it as safetensors. NumPy only.
 
-    python3 train_policy.py [--evaluations 800] [--seed 1] [--out walk.safetensors]
+    python3 train_policy.py [--evaluations 640] [--seed 1] [--out walk.safetensors]
 
 Writes the network and, beside it, a scene that plays it: `limber walk.lua`. The same seed gives the same files.
 """
@@ -139,7 +139,7 @@ sim:on_start(function() visuals.camera:follow(dog) end)
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--evaluations", type=int, default=800)
+    parser.add_argument("--evaluations", type=int, default=640)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", default="walk.safetensors")
     options = parser.parse_args()
