@@ -1027,6 +1027,30 @@ function route_:remove() end
 ---@field [integer] route
 ---@overload fun(self: sim, wanted?: string|route|(string|route)[]): fun(): route, integer
 
+-- Policies.
+
+---Loads a policy: a small neural network that computes actions from observations. The file is .safetensors or .onnx; it
+---is found beside the scene, like a model. At the top level of the scene only. A save of the file reloads the scene.
+---@param file string # The file, such as "walk.safetensors".
+---@return policy
+function sim:load_policy(file) end
+
+---A loaded policy. Each one has hidden values of its own, if its network has a GRU.
+---@class policy
+---@field inputs integer # read-only. Number of observations.
+---@field outputs integer # read-only. Number of actions.
+local policy_ = {}
+
+---Computes the actions. The same observations give the same bits on every machine. A network with a GRU replaces its
+---hidden values: evaluate it once in each tick. If a number is not finite, nothing changes.
+---@param observations number[] # `policy.inputs` numbers.
+---@param actions? number[] # A table that gets the actions, so that a tick creates no new one.
+---@return number[]
+function policy_:evaluate(observations, actions) end
+
+---Sets the hidden values of a network with a GRU to 0, as at its start.
+function policy_:reset() end
+
 -- The world, and the callbacks of a scene.
 
 ---The world. The top level of a scene describes the objects; callbacks act on them.

@@ -7,7 +7,9 @@
 #include <new>
 
 #include "engine/behaviors.h"
+#include "engine/edited.h"
 #include "engine/show.h"
+#include "support/policy_files.h"
 
 namespace {
 
@@ -77,6 +79,28 @@ local part = body:add_part("ball", sim:add_sphere_shape("ball", 0.1))
 sim:on_step(function(dt) part:apply_force(vec3(0, 0, 9.81)) end)
 )");
   Show show(scene.path());
+  EXPECT_EQ(allocations_during(show, 200), 0U);
+}
+
+TEST(EngineAllocation, NoneWithAPolicy) {
+  const ShowFolder folder;
+  Random random(1, "policy");
+  limber::test::SafetensorsWriter policy;
+  policy.add("weight_ih_l0", limber::test::random_tensor(random, {120, 8}));
+  policy.add("weight_hh_l0", limber::test::random_tensor(random, {120, 40}));
+  policy.add("0.weight", limber::test::random_tensor(random, {3, 40}));
+  folder.write("scripts/walk.safetensors", policy.bytes());
+  folder.write("scripts/scene.lua", R"(
+local policy = sim:load_policy("walk.safetensors")
+local part = sim:add_body("ball"):add_part("ball", sim:add_sphere_shape("ball", 0.1))
+local observations, actions = { 0, 0, 0, 0, 0, 0, 0, 1 }, {}
+sim:on_step(function()
+  observations[1] = part.position.z
+  policy:evaluate(observations, actions)
+  part:apply_force(vec3(actions[1], actions[2], 9.81))
+end)
+)");
+  Show show(folder.path("scripts/scene.lua"));
   EXPECT_EQ(allocations_during(show, 200), 0U);
 }
 

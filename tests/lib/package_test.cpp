@@ -95,10 +95,12 @@ TEST(LimberPackage, PkgConfigCompilesAndOnlyTheInterfaceIsExported) {
 
 #ifdef LIMBER_PYTHON
 TEST(LimberPackage, PythonPackageKeepsItsRules) {
-  const RunResult result = Process({"env", "PYTHONPATH=" LIMBER_BUILD "/python", LIMBER_PYTHON, "-W", "error",
-                                    LIMBER_SOURCE_DIR "/tests/lib/python_protocol.py"})
-                               .finish();
-  EXPECT_EQ(result.code, 0) << result.out << result.err;
+  for (const char* tests : {"/tests/lib/python_protocol.py", "/tests/lib/python_policy.py"}) {
+    const RunResult result = Process({"env", "PYTHONPATH=" LIMBER_BUILD "/python", "PYTHONDONTWRITEBYTECODE=1",
+                                      LIMBER_PYTHON, "-W", "error", std::string(LIMBER_SOURCE_DIR) + tests})
+                                 .finish();
+    EXPECT_EQ(result.code, 0) << result.out << result.err;
+  }
 }
 #endif
 

@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Docs, LuaPage,
                                          "docs/howto/camera.md", "docs/howto/time.md", "docs/howto/faq.md",
                                          "docs/howto/loops.md", "docs/howto/tendons.md", "docs/howto/lighting.md",
                                          "docs/howto/experiments.md", "docs/howto/mocap.md", "docs/howto/routes.md",
-                                         "docs/howto/qualities.md"),
+                                         "docs/howto/qualities.md", "docs/howto/policies.md"),
                          [](const auto& page) { return std::filesystem::path(page.param).stem().string(); });
 
 TEST(Docs, TheTutorialIsComplete) { EXPECT_GE(blocks_of_page("docs/learn/scripting.md").size(), 12u); }

@@ -13,6 +13,7 @@
 #include "luacats.h"
 #include "properties/property_text.h"
 #include "stage.h"
+#include "support/policy_files.h"
 
 namespace limber::script {
 namespace {
@@ -90,10 +91,12 @@ TEST_F(Annotate, ValuesHaveTheDocumentedMembers) {
                                                          {"rng", "rng"},
                                                          {"timer", "sim:after(1, print)"},
                                                          {"address", "osc:to('127.0.0.1:9')"},
-                                                         {"link", "body:link('base')"}};
+                                                         {"link", "body:link('base')"},
+                                                         {"policy", "policy"}};
   ScriptFixture fixture;
   fixture.write("urdf/one.urdf", R"(<robot name="one"><link name="base"/></robot>)");
-  ASSERT_EQ(fixture.run("body = sim:load_urdf('urdf/one.urdf')"), "");
+  fixture.write("one.safetensors", limber::test::linear_policy({1, 1}, {1}));
+  ASSERT_EQ(fixture.run("body = sim:load_urdf('urdf/one.urdf') policy = sim:load_policy('one.safetensors')"), "");
   for (const auto& [name, expression] : kValues) {
     const luacats::Class& documented = read.classes[name];
     std::vector<std::string> members;

@@ -48,6 +48,10 @@
 ---A dancer is a node with joints, whose places, rotations and features are readouts. [Motion
 ---capture](../../howto/mocap.md) shows how to use them.
 
+---@page policies Policies: let a trained network move a body.
+---A policy computes actions from observations, with the same bits on every machine. [Policies](../../howto/policies.md)
+---shows how to export and use them.
+
 ---@page routes Routes: let readouts and settings set other properties, without code in each tick.
 ---A route reads a property and sets another one, in each tick. It is a node of the property tree: its settings are OSC
 ---addresses, and presets, undo and takes contain them. [Routes](../../howto/routes.md) shows how to use them.

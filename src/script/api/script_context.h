@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "model/import_options.h"
+#include "model/policy/policy_network.h"
 #include "script/api/c_api.h"
 #include "script/api/call_effects.h"
 #include "script/api/params_node.h"
@@ -86,11 +87,19 @@ struct NeighborResults {
   LimberGroupMeans group_means{};         ///< Means of a whole group, as last requested; valid until the call ends.
 };
 
+/// Policies that the run has loaded, in the order of the calls, and memory for their evaluation.
+struct LoadedPolicies {
+  static constexpr std::size_t kMax = 1000;
+  std::vector<std::shared_ptr<const model::PolicyNetwork>> networks;
+  std::vector<float> workspace;
+};
+
 /// Models and meshes that the run has loaded, by file name and import options: callbacks can reuse them, but must not
 /// read from disk.
 struct LoadedModels {
   std::map<std::string, std::shared_ptr<const model::BodyModel>> models;
   std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes;
+  LoadedPolicies policies;
 };
 
 /// OSC ports and handlers of the scene.

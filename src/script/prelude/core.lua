@@ -31,6 +31,7 @@ ffi.cdef [[
   typedef struct link { const int32_t slot_, generation_, number_; } link;
   typedef struct timer { const int32_t number_, run_; } timer;
   typedef struct rng { const int32_t slot_, generation_; } rng;
+  typedef struct policy { const int32_t number_; } policy;
   typedef struct address { const double ip_; const int32_t port_; } address;
 ]]
 

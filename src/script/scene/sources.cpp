@@ -140,24 +140,34 @@ Result<std::shared_ptr<const model::Image>> Sources::image(const std::string& pa
   return images_[path] = *image;
 }
 
-Result<std::shared_ptr<const model::BvhClip>> Sources::clip(const std::string& path) {
+// The object that `parse` makes of a file's bytes, unless this or the earlier run has it already.
+template <class T, class Parse>
+Result<std::shared_ptr<const T>> Sources::parsed(ParsedFiles<T> Sources::*list, const std::string& path, Parse parse) {
   contents_.try_emplace(path, 0);
-  std::shared_ptr<const model::BvhClip> clip;
-  if (const auto* before = find_known(&Sources::clips_, path)) {
-    clip = *before;
+  std::shared_ptr<const T> object;
+  if (const auto* before = find_known(list, path)) {
+    object = *before;
   } else {
     const std::string* const archived = from_archive() ? earlier_->archived_files_->content(path) : nullptr;
     if (from_archive() && archived == nullptr)
       return Error{fmt::format("file '{}' is not among the recorded files", path)};
     const Result<std::string> text =
-        archived != nullptr ? Result<std::string>(*archived) : read_text(path, model::BvhClip::kMaxBytes);
+        archived != nullptr ? Result<std::string>(*archived) : read_text(path, T::kMaxBytes);
     if (!text) return Error{text.error()};
-    Result<std::shared_ptr<const model::BvhClip>> read = model::parse_bvh(*text, path);
+    Result<std::shared_ptr<const T>> read = parse(*text, path);
     if (!read) return read;
-    clip = *read;
+    object = *read;
   }
-  contents_[path] = clip->content_hash;
-  return clips_[path] = clip;
+  contents_[path] = object->content_hash;
+  return (this->*list)[path] = object;
+}
+
+Result<std::shared_ptr<const model::BvhClip>> Sources::clip(const std::string& path) {
+  return parsed<model::BvhClip>(&Sources::clips_, path, &model::parse_bvh);
+}
+
+Result<std::shared_ptr<const model::PolicyNetwork>> Sources::policy(const std::string& path) {
+  return parsed<model::PolicyNetwork>(&Sources::policies_, path, &model::parse_policy);
 }
 
 SourcesRead Sources::read() const {

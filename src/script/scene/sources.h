@@ -1,5 +1,5 @@
-// Sources: the files that a run of a scene reads (search results, scripts, models, meshes), stored so that the scene
-// can run again without the disk and the files can be watched for changes. [any]
+// Sources: the files that a run of a scene reads (search results, scripts, models, meshes, policies), stored so that
+// the scene can run again without the disk and the files can be watched for changes. [any]
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,7 @@
 
 #include "model/mocap/bvh.h"
 #include "model/model_library.h"
+#include "model/policy/policy_file.h"
 #include "script/scene/script_files.h"
 
 namespace limber::script {
@@ -27,7 +28,7 @@ struct SourcesRead {
   std::map<std::string, std::string> found;   ///< Search requests and the resulting paths.
   std::map<std::string, std::string> texts;   ///< Script texts by path.
   std::map<std::string, std::string> meshes;  ///< As FileSet::found.
-  std::vector<std::string> files;             ///< Models, meshes, images and motions.
+  std::vector<std::string> files;             ///< Models, meshes, images, motions and policies.
 };
 
 class Sources {
@@ -61,6 +62,8 @@ class Sources {
   Result<std::shared_ptr<const model::Image>> image(const std::string& path);
   /// Returns the motion of a BVH file.
   Result<std::shared_ptr<const model::BvhClip>> clip(const std::string& path);
+  /// Returns the network of a policy's file.
+  Result<std::shared_ptr<const model::PolicyNetwork>> policy(const std::string& path);
 
   /// Ends the run: drops the reference to the earlier run.
   void close() { earlier_ = nullptr; }
@@ -69,6 +72,10 @@ class Sources {
   SourcesRead read() const;
 
  private:
+  template <class T>
+  using ParsedFiles = std::map<std::string, std::shared_ptr<const T>>;  // by path
+  template <class T, class Parse>
+  Result<std::shared_ptr<const T>> parsed(ParsedFiles<T> Sources::*list, const std::string& path, Parse parse);
   template <class T>
   const T* find_known(std::map<std::string, T> Sources::*list, const std::string& key) const;
 
@@ -86,7 +93,8 @@ class Sources {
   std::map<std::string, std::shared_ptr<const model::BodyModel>> models_;
   std::map<std::string, std::shared_ptr<const model::MeshModel>> meshes_;
   std::map<std::string, std::shared_ptr<const model::Image>> images_;
-  std::map<std::string, std::shared_ptr<const model::BvhClip>> clips_;
+  ParsedFiles<model::BvhClip> clips_;
+  ParsedFiles<model::PolicyNetwork> policies_;
   std::vector<std::string> tried_;
 };
 

@@ -119,6 +119,7 @@ const std::vector<Measure>& measures() {
       {"reload", "saving a scene while it plays: delay until the new version runs, and effect on ticks",
        &measure_reload},
       {"preset", "presets of all properties of 1000 arms: store, recall, morph", &measure_preset},
+      {"policy", "an evaluation of a network of 48-256-256-12, and of a GRU", &measure_policy},
       {"take", "16 arms and 1000 messages per second: cost of recording a take, and its replay", &measure_take},
       {"history", "1, 100 and 1000 arms: checkpoints and rewind", &measure_history},
       {"osc-in", "messages per second from a socket into properties; a burst of 10 000", &measure_osc_in},

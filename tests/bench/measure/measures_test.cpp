@@ -108,6 +108,15 @@ TEST(Measures, RecordsAndReplaysATake) {
   EXPECT_GT(figures["replayed_by_played"], 0);
 }
 
+TEST(Measures, EvaluatesPolicies) {
+  MeasureOptions options;
+  options.ticks = 5;
+  const Json figures = figures_of("policy", options);
+  EXPECT_EQ(figures["evaluations"], 5);
+  EXPECT_GT(figures["mlp 48-256-256-12, tanh, us"]["min"], 0);
+  EXPECT_GT(figures["gru 48-256, linear 256-12, us"]["min"], 0);
+}
+
 TEST(Measures, PrintsJson) {
   testing::internal::CaptureStdout();
   const int code = run_measures({{"arms-1", "arm-quality"}, false, true, 3});
