@@ -32,6 +32,8 @@ const char* get_clipboard(void* options) {
   return pasted.c_str();
 }
 
+constexpr float kHelpMargins = 12;  // pixels, of both sides together
+
 // True for actions that the window performs.
 bool is_of_window(HotkeyAction action) {
   return action == HotkeyAction::toggle_output_window || action == HotkeyAction::toggle_full_screen ||
@@ -354,7 +356,7 @@ void Gui::draw_key_text(const std::string& keys) const {
 void Gui::draw_help() {
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({size.x / 2, size.y / 2}, 0, {0.5F, 0.5F});
-  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - 16, size.y - 16});
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {size.x - kHelpMargins, size.y - kHelpMargins});
   ImGui::SetNextWindowFocus();
   ImGui::SetNextWindowBgAlpha(1);
   if (ImGui::Begin("##help", nullptr, kOverlay | ImGuiWindowFlags_AlwaysAutoResize)) {
@@ -362,7 +364,7 @@ void Gui::draw_help() {
     constexpr float kOtherLines = 5.2F;  // the title, the mouse, two separators
     const float lines = static_cast<float>(hotkeys_.all().size()) + kOtherLines;
     const float high = std::max(ImGui::GetFontSize(), imgui::font_height(*context_.fonts.code));
-    const float line_space = (size.y - 16 - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
+    const float line_space = (size.y - kHelpMargins - 2 * ImGui::GetStyle().WindowPadding.y) / lines;
     ImGui::SetWindowFontScale(std::clamp(line_space / high, 0.5F, 1.0F));
     ImGui::TextUnformatted("Keys and mouse (click a key to change it)");
     ImGui::Separator();
