@@ -27,12 +27,12 @@ bool is_allowed(const std::vector<Cidr>& list, std::uint32_t address);
 /// The OSC options of the command line. `in` and `out`: nullopt if the option is not given; an empty list means off.
 struct OscOptions {
   std::optional<std::vector<ListenAddress>> in;  ///< `--osc-in`; nullopt: the scene or the default decides.
-  std::vector<ListenAddress> tcp = {};           ///< `--osc-tcp`; empty: none.
   std::optional<std::vector<StreamTarget>> out;  ///< `--osc-out`.
   std::vector<Cidr> allow;                       ///< `--osc-allow`; empty: every sender is allowed.
   bool optional = false;                         ///< `--osc-optional`: continue if a port can't be opened.
   /// Returns the directly connected subnets; senders in them are not limited. Empty: asks the system.
   std::function<std::vector<Cidr>()> connected = {};
+  std::vector<ListenAddress> tcp = {};  ///< `--osc-tcp`; empty: none.
 };
 
 /// Parses `[ADDR:]PORT` or `off`; several addresses are separated by commas. Port 0 lets the system choose. [any]
