@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,8 +66,7 @@ class OnnxWriter {
     ProtoWriter to;
     for (const std::size_t side : from.shape) to.whole(1, static_cast<std::int64_t>(side));
     to.whole(2, 1).text(8, name);
-    std::string data(from.values.size() * sizeof(float), '\0');
-    std::memcpy(data.data(), from.values.data(), data.size());
+    const std::string data(reinterpret_cast<const char*>(from.values.data()), from.values.size() * sizeof(float));
     to.text(raw ? 9 : 4, data);
     return to;
   }

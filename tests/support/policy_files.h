@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,8 +33,7 @@ inline TestTensor random_tensor(Random& random, std::vector<std::size_t> shape, 
 class SafetensorsWriter {
  public:
   void add(const std::string& name, const TestTensor& tensor, const std::string& type = "F32") {
-    std::string data(tensor.values.size() * sizeof(float), '\0');
-    std::memcpy(data.data(), tensor.values.data(), data.size());
+    const std::string data(reinterpret_cast<const char*>(tensor.values.data()), tensor.values.size() * sizeof(float));
     add_bytes(name, tensor.shape, type, data);
   }
   void add_bytes(const std::string& name, const std::vector<std::size_t>& shape, const std::string& type,
