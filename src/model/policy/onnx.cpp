@@ -151,7 +151,7 @@ Result<void> OnnxPolicy::find_inputs() {
 Result<void> OnnxPolicy::add_node(const OnnxNode& node) {
   const Step step = node.domain.empty() || node.domain == "ai.onnx" ? step_of(node.op) : nullptr;
   if (step != nullptr && !node.outputs.empty()) {
-    if (const Result<void> selected = select_part(node); !selected) return selected;
+    if (Result<void> selected = select_part(node); !selected) return selected;
     return (this->*step)(node);
   }
   return Error{fmt::format("{} is not supported; there are: {}. Export the layers that compute the actions alone.",
@@ -220,8 +220,7 @@ Result<void> OnnxPolicy::add_product(const OnnxNode& node) {
   for (float& value : values) value *= alpha;
   const Result<std::vector<float>> bias = is_gemm ? gemm_bias(node, outputs) : std::vector<float>();
   if (!bias) return Error{bias.error()};
-  if (const Result<void> added = builder_.linear(node_label(node), outputs, inputs, values, *bias); !added)
-    return added;
+  if (Result<void> added = builder_.linear(node_label(node), outputs, inputs, values, *bias); !added) return added;
   advance(node);
   return {};
 }
@@ -235,7 +234,7 @@ Result<void> OnnxPolicy::add_arithmetic(const OnnxNode& node) {
   // its last dimension has a number for each value, the others are 1
   if (!tensor->shape.empty() && tensor->shape.back() != values.size())
     return wrong_inputs(node, "a constant number or vector");
-  const Result<void> added = add_vector(node, is_first, std::move(values));
+  Result<void> added = add_vector(node, is_first, std::move(values));
   if (added) advance(node);
   return added;
 }
@@ -252,7 +251,7 @@ Result<void> OnnxPolicy::add_vector(const OnnxNode& node, bool is_first, std::ve
   }
   if (is_first) {
     for (float& value : values) value = -value;
-  } else if (const Result<void> negated = builder_.vector(label, Kind::scale, {-1}); !negated) {
+  } else if (Result<void> negated = builder_.vector(label, Kind::scale, {-1}); !negated) {
     return negated;
   }
   return builder_.vector(label, Kind::shift, std::move(values));
@@ -276,7 +275,7 @@ Result<void> OnnxPolicy::add_activation(const OnnxNode& node) {
     step.kind = Kind::silu;
     at_++;
   }
-  const Result<void> added = builder_.elementwise(node_label(node), step.kind, step.a);
+  Result<void> added = builder_.elementwise(node_label(node), step.kind, step.a);
   if (added) advance(product == nullptr ? node : *product);
   return added;
 }
@@ -291,7 +290,7 @@ Result<void> OnnxPolicy::add_clip(const OnnxNode& node) {
   }
   if (!is_current(input(node, 0)) || limits[0] > limits[1])
     return wrong_inputs(node, "the vector of the node before, and a minimum up to the maximum");
-  if (const Result<void> added = builder_.elementwise(node_label(node), Kind::clip, limits[0], limits[1]); !added)
+  if (Result<void> added = builder_.elementwise(node_label(node), Kind::clip, limits[0], limits[1]); !added)
     return added;
   advance(node);
   return {};
@@ -371,7 +370,7 @@ Result<void> OnnxPolicy::add_gru(const OnnxNode& node) {
   const std::size_t hidden = by_hidden->shape[2], inputs = by_inputs->shape[2];
   if (by_inputs->shape[1] != 3 * hidden || by_hidden->shape[1] != 3 * hidden)
     return wrong_inputs(node, "weights of three gates");
-  if (const Result<void> checked = check_gru(node); !checked) return checked;
+  if (Result<void> checked = check_gru(node); !checked) return checked;
   std::span<const float> biases;
   if (!input(node, 3).empty()) {
     const OnnxTensor* const added = constant(input(node, 3));
@@ -379,9 +378,9 @@ Result<void> OnnxPolicy::add_gru(const OnnxNode& node) {
     biases = added->values;
   }
   const std::size_t half = biases.size() / 2;
-  const Result<void> added = builder_.gru(node_label(node), hidden, inputs, reordered_gates(by_inputs->values),
-                                          reordered_gates(by_hidden->values), reordered_gates(biases.first(half)),
-                                          reordered_gates(biases.last(half)));
+  Result<void> added = builder_.gru(node_label(node), hidden, inputs, reordered_gates(by_inputs->values),
+                                    reordered_gates(by_hidden->values), reordered_gates(biases.first(half)),
+                                    reordered_gates(biases.last(half)));
   if (added) advance(node);
   return added;
 }

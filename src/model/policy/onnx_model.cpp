@@ -248,7 +248,12 @@ class OnnxReader {
   std::size_t names_ = 0, numbers_ = 0;
 };
 
-enum OnnxType : std::int64_t { kFloat = 1, kInt64 = 7, kHalf = 10, kDouble = 11, kBfloat16 = 16 };
+// Types of tensors, TensorProto.DataType.
+constexpr std::int64_t kFloat = 1;
+constexpr std::int64_t kInt64 = 7;
+constexpr std::int64_t kHalf = 10;
+constexpr std::int64_t kDouble = 11;
+constexpr std::int64_t kBfloat16 = 16;
 
 void OnnxReader::read_raw(OnnxTensor& tensor, std::int64_t type, std::string_view raw) {
   switch (type) {

@@ -56,7 +56,7 @@ Result<void> PolicyBuilder::add(std::string_view name, PolicyStep step, std::siz
 Result<void> PolicyBuilder::linear(std::string_view name, std::size_t outputs, std::size_t inputs,
                                    std::span<const float> values, std::span<const float> bias) {
   if (outputs == 0 || inputs == 0) return Error{fmt::format("{} is empty. Export the policy again.", name)};
-  if (const Result<void> checked = check_parameters(name, {values, bias}); !checked) return checked;
+  if (Result<void> checked = check_parameters(name, {values, bias}); !checked) return checked;
   PolicyStep step;
   if (outputs <= PolicyNetwork::kMaxWidth && values.size() <= PolicyNetwork::kMaxParameters)
     step.weights = PolicyMatrix(outputs, inputs, values, bias);
@@ -67,8 +67,7 @@ Result<void> PolicyBuilder::gru(std::string_view name, std::size_t hidden, std::
                                 std::span<const float> input_weights, std::span<const float> hidden_weights,
                                 std::span<const float> input_bias, std::span<const float> hidden_bias) {
   if (hidden == 0 || inputs == 0) return Error{fmt::format("{} is empty. Export the policy again.", name)};
-  if (const Result<void> checked = check_parameters(name, {input_weights, hidden_weights, input_bias, hidden_bias});
-      !checked)
+  if (Result<void> checked = check_parameters(name, {input_weights, hidden_weights, input_bias, hidden_bias}); !checked)
     return checked;
   PolicyStep step;
   step.kind = PolicyStep::Kind::gru;
@@ -82,7 +81,7 @@ Result<void> PolicyBuilder::gru(std::string_view name, std::size_t hidden, std::
 
 Result<void> PolicyBuilder::vector(std::string_view name, PolicyStep::Kind kind, std::vector<float> values) {
   if (values.empty()) return Error{fmt::format("{} is empty. Export the policy again.", name)};
-  if (const Result<void> checked = check_parameters(name, {values}); !checked) return checked;
+  if (Result<void> checked = check_parameters(name, {values}); !checked) return checked;
   const std::size_t width = values.size() == 1 ? width_ : values.size();
   const std::size_t parameters = values.size();
   PolicyStep step;

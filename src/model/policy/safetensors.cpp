@@ -174,7 +174,7 @@ Result<void> SafetensorsReader::read_header(std::string_view bytes) {
   std::size_t total = 0;
   for (const auto& [name, entry] : header.items()) {
     if (name == "__metadata__") {
-      if (const Result<void> read = read_metadata(entry); !read) return read;
+      if (Result<void> read = read_metadata(entry); !read) return read;
       continue;
     }
     Result<Tensor> tensor = read_tensor(name, entry, data);
@@ -333,14 +333,14 @@ Result<void> SafetensorsReader::add_layers() {
   for (std::size_t i = 0; i < order->size(); i++) {
     const std::string& name = (*order)[i];
     const Layer& layer = layers_.find(name)->second;
-    if (const Result<void> added = add_layer(name, layer); !added) return added;
+    if (Result<void> added = add_layer(name, layer); !added) return added;
     if (layer.is_gru || i + 1 == order->size()) continue;
     if (activation == nullptr)
       return Error{
           fmt::format("the activation between the layers is not given. Write __metadata__ {{\"activation\": "
                       "\"tanh\"}}; there are: {}, none.",
                       fmt::join(policy_activations(), ", "))};
-    if (const Result<void> added = add_activation(*activation, "activation"); !added) return added;
+    if (Result<void> added = add_activation(*activation, "activation"); !added) return added;
   }
   return {};
 }
@@ -355,14 +355,14 @@ Result<void> SafetensorsReader::add_vector(std::string_view name, Kind kind, flo
 
 // (x - input_mean) / input_std, clamped to ± input_clip
 Result<void> SafetensorsReader::add_inputs() {
-  if (const Result<void> mean = add_vector("input_mean", Kind::shift, [](float v) { return -v; }); !mean) return mean;
+  if (Result<void> mean = add_vector("input_mean", Kind::shift, [](float v) { return -v; }); !mean) return mean;
   if (const auto std = tensors_.find("input_std"); std != tensors_.end()) {
     for (const float value : std->second.values) {
       if (!(value > 0))
         return Error{"tensor 'input_std' has a number that is not above 0. Add a small constant to it."};
     }
   }
-  if (const Result<void> std = add_vector("input_std", Kind::scale, [](float v) { return 1 / v; }); !std) return std;
+  if (Result<void> std = add_vector("input_std", Kind::scale, [](float v) { return 1 / v; }); !std) return std;
   const std::string* const clip = metadata("input_clip");
   if (clip == nullptr) return {};
   const std::optional<double> limit = parse_number(*clip);
@@ -373,14 +373,14 @@ Result<void> SafetensorsReader::add_inputs() {
 }
 
 Result<void> SafetensorsReader::build() {
-  if (const Result<void> found = find_layers(); !found) return found;
-  if (const Result<void> added = add_inputs(); !added) return added;
-  if (const Result<void> added = add_layers(); !added) return added;
+  if (Result<void> found = find_layers(); !found) return found;
+  if (Result<void> added = add_inputs(); !added) return added;
+  if (Result<void> added = add_layers(); !added) return added;
   if (const std::string* output = metadata("output")) {
-    if (const Result<void> added = add_activation(*output, "output"); !added) return added;
+    if (Result<void> added = add_activation(*output, "output"); !added) return added;
   }
   const auto same = [](float v) { return v; };
-  if (const Result<void> scale = add_vector("output_scale", Kind::scale, same); !scale) return scale;
+  if (Result<void> scale = add_vector("output_scale", Kind::scale, same); !scale) return scale;
   return add_vector("output_offset", Kind::shift, same);
 }
 
