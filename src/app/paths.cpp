@@ -58,6 +58,11 @@ std::string program_command() {
   return shell_word(program);
 }
 
+std::string link_program() {
+  const std::string beside = (fs::path(system::executable_path()).parent_path() / "limber-link").string();
+  return system::is_executable(beside) ? beside : "limber-link";
+}
+
 std::string shader_dir() {
   const std::string data = data_dir();
   std::error_code error;

@@ -17,6 +17,9 @@ std::string shell_word(std::string_view text);
 /// Returns the command that starts this program in a shell: "limber" if PATH finds it, else the quoted path. [any]
 std::string program_command();
 
+/// Returns the program limber-link: beside this program, else as PATH finds it. [any]
+std::string link_program();
+
 /// Returns the folder of the shaders, which may be edited while the program runs; empty if there is none. [any]
 std::string shader_dir();
 

@@ -121,7 +121,6 @@ RunResult run_input(const std::string& input) {
 }
 
 TEST(Errors, MatchTheTable) {
-  LIMBER_SKIP_IF(kAddressSanitizer, "the errors' own tests execute the same code");
   const TempFolder folder;
   write_inputs(folder);
   const PortInUse port_in_use(SOCK_DGRAM);

@@ -76,7 +76,6 @@ TEST(TakeApp, ReplaysAKilledShowToItsLastTick) {
 }
 
 TEST(TakeApp, ReplaysAShowKilledAtAnyTime) {
-  LIMBER_SKIP_IF(kAddressSanitizer, "tests of damaged takes execute the same code");
   Random random(1, "kills");
   for (int i = 0; i < 8; i++) {
     const TempFolder folder;

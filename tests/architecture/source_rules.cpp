@@ -30,6 +30,7 @@ constexpr std::array kModules{
     // Modules outside the simulation thread see commands, snapshots and the catalog, but no simulation objects.
     Module{"net/osc", "properties model engine"},
     Module{"net/lighting", "properties model engine"},
+    Module{"net/link", "properties model engine"},
     Module{"net/console", "properties model engine"},
     Module{"net/oscquery", "properties model engine"},
     Module{"ui/render", "properties model engine"},
@@ -40,8 +41,8 @@ constexpr std::array kModules{
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
     Module{"app",
-           "properties model sim script engine net/osc net/lighting net/console net/oscquery ui/render ui/panel export "
-           "experiments"},
+           "properties model sim script engine net/osc net/lighting net/link net/console net/oscquery ui/render ui/panel "
+           "export experiments"},
 };
 
 /// Folders that only files of their own module include.
@@ -66,6 +67,7 @@ constexpr std::array kNamespaces{
     Namespace{"engine/", "engine"},
     Namespace{"net/osc/", "osc"},
     Namespace{"net/lighting/", "lighting"},
+    Namespace{"net/link/", "link"},
     Namespace{"net/console/", "console"},
     Namespace{"net/oscquery/", "oscquery"},
     Namespace{"ui/render/", "render"},
@@ -377,6 +379,7 @@ std::vector<SourceFile> source_files(std::string_view folder, const std::vector<
   if (!fs::is_directory(root / folder)) return files;
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const std::string path = entry.path().lexically_relative(root).generic_string();
+    if (path.starts_with("src/link/")) continue;  // limber-link, a program of its own
     if (std::none_of(endings.begin(), endings.end(), [&](const std::string& e) { return path.ends_with(e); })) continue;
     std::ifstream in(entry.path(), std::ios::binary);
     files.push_back({path, {std::istreambuf_iterator<char>(in), {}}});

@@ -19,7 +19,7 @@ std::string fault_of(const std::string& text) {
 
 TEST(CueFile, ReadsEveryField) {
   const Result<CueList> cues = parse_cues(with_cue(
-      R"("name": "storm", "preset": "dark", "time": 2.5, "easing": "in", "follow": 0, "note": "bring the fog",
+      R"("name": "storm", "preset": "dark", "time": 2.5, "easing": "in", "follow": 0, "note": "bring the fog", "at": "bar", "when": "/drum",
          "messages": [["/lighting/blackout", true], ["/mocap/play", "dancer", 1, null]])"));
   ASSERT_TRUE(cues.ok()) << cues.error();
   ASSERT_EQ(cues->size(), 2u);
@@ -30,6 +30,9 @@ TEST(CueFile, ReadsEveryField) {
   const Cue& cue = (*cues)[1];
   EXPECT_EQ(cue.note, "bring the fog");
   EXPECT_EQ(cue.follow, 0.0);
+  EXPECT_EQ(cue.at, CueStart::bar);
+  EXPECT_EQ(cue.when, "/drum");
+  EXPECT_EQ(first.at, CueStart::now);
   const std::vector<Message> messages = messages_of(cue);
   ASSERT_EQ(messages.size(), 3u);
   EXPECT_EQ(messages[0].address, "/preset/recall");
@@ -60,6 +63,9 @@ TEST(CueFile, ErrorsNameTheCueAndTheField) {
       {R"("name": "b", "easing": "quick")", "cue 2 'b': easing: unknown easing 'quick'; expected one of: linear"},
       {R"("name": "b", "follow": 1e9)", "cue 2 'b': follow: must be"},
       {R"("name": "b", "folow": 1)", "cue 2 'b': there is no field 'folow'; did you mean 'follow'?"},
+      {R"("name": "b", "at": "noon")", "cue 2 'b': at: must be \"now\", \"beat\" or \"bar\", not 'noon'"},
+      {R"("name": "b", "when": "drum")", "cue 2 'b': when: 'drum' is not an address"},
+      {R"("name": "b", "when": "/cue/go")", "cue 2 'b': when: a cue can't control the cue list"},
       {R"("name": "b", "messages": "/x")", "cue 2 'b': messages: must be a list"},
       {R"("name": "b", "messages": [["/a"], "/b"])", "cue 2 'b': messages: 2: must be a list of an address"},
       {R"("name": "b", "messages": [["a"]])", "cue 2 'b': messages: 1: 'a' is not an address"},

@@ -47,6 +47,11 @@ struct CueShow : testing::Test {
     return std::ranges::any_of(texts, [&](const std::string& line) { return line.find(text) != line.npos; });
   }
 
+  static bool logged(std::uint64_t since, const std::string& text) {
+    return std::ranges::any_of(log_since(since),
+                               [&](const LogLine& line) { return line.text.find(text) != line.text.npos; });
+  }
+
   ShowFolder folder;
 };
 
@@ -177,8 +182,9 @@ TEST_F(CueShow, JumpsAndGoesBack) {
 TEST_F(CueShow, ACueDoesNotControlTheCueList) {
   write(R"({"limber cues": 1, "cues": [{"name": "a", "messages": [["/c*e/go"]]}, {"name": "b"}]})");
   Show show(options());
+  const std::uint64_t before = log_newest();
   send(show, "/cue/go");
-  EXPECT_TRUE(sent(show, "a cue can't control the cue list"));
+  EXPECT_TRUE(logged(before, "cue: /c*e/go: a cue can't control the cue list"));
   show.ticks(3);
   EXPECT_EQ(current(show), 1);
 }
@@ -256,6 +262,110 @@ TEST_F(CueShow, UndoRevertsACueInOneStep) {
   send(show, "/edit/undo");
   EXPECT_EQ(show.read("/scene/wind"), 1);
   EXPECT_EQ(show.read("/physics/sim/gravity", 2), 0);
+}
+
+TEST_F(CueShow, WrongMessagesAreLoggedAndTheOthersSent) {
+  write(R"({"limber cues": 1, "cues": [{"name": "a", "preset": "none",
+    "messages": [["/scene/wnd", 1], ["/physics/sim/gravity", "down"], ["/scene/wind", 3]]}]})");
+  Show show(options());
+  const std::uint64_t before = log_newest();
+  send(show, "/cue/go");
+  EXPECT_TRUE(logged(before, "cue: /preset/recall: there is no preset 'none'"));
+  EXPECT_TRUE(logged(before, "cue: /scene/wnd: "));
+  EXPECT_TRUE(logged(before, "cue: /physics/sim/gravity: "));
+  EXPECT_EQ(show.read("/scene/wind"), 3);
+}
+
+// At 120 beats per minute, a beat has 30 ticks and a bar of three beats 90.
+struct BeatCueShow : CueShow {
+  BeatCueShow() {
+    write(R"({"limber cues": 1, "cues": [
+      {"name": "one", "follow": 0.5}, {"name": "two", "at": "beat", "messages": [["/scene/wind", 2]]},
+      {"name": "three", "at": "bar"}, {"name": "four"}]})");
+  }
+  static void tick_until_next_cue(Show& show, double cue) {
+    for (int i = 0; i < 500 && current(show) != cue; i++) show.ticks(1);
+    EXPECT_EQ(current(show), cue);
+  }
+};
+
+TEST_F(BeatCueShow, CuesWaitForTheBeatAndTheBar) {
+  Show show(options());
+  send(show, "/clock/beats_per_bar", 3);
+  show.ticks(4);
+  send(show, "/cue/jump", "two");
+  EXPECT_EQ(current(show), 0);
+  EXPECT_EQ(show.read("/cue/waiting"), 2);
+  tick_until_next_cue(show, 2);
+  EXPECT_EQ(show.engine.world().tick(), 31u) << "in the tick after beat 1 was reached";
+  EXPECT_EQ(show.read("/scene/wind"), 2);
+  EXPECT_EQ(show.read("/cue/waiting"), 0);
+  send(show, "/cue/go");
+  tick_until_next_cue(show, 3);
+  EXPECT_EQ(show.engine.world().tick(), 91u);
+}
+
+TEST_F(BeatCueShow, TheSecondGoDoesNotWait) {
+  Show show(options());
+  show.ticks(3);
+  send(show, "/cue/jump", 3);
+  EXPECT_EQ(current(show), 0);
+  send(show, "/cue/jump", 3);
+  EXPECT_EQ(current(show), 3);
+  send(show, "/clock/playing", 0);
+  send(show, "/cue/jump", 2);
+  show.ticks(100);
+  EXPECT_EQ(show.read("/cue/waiting"), 2) << "a clock that stands still has no beats";
+  send(show, "/cue/jump", 4);
+  EXPECT_EQ(show.read("/cue/waiting"), 0) << "another cue replaces it";
+}
+
+// A cue that starts by itself waits for its beat as well, a rewind and a take reproduce it.
+TEST_F(BeatCueShow, FollowsOnTheBeat) {
+  EngineOptions recorded = options();
+  recorded.record = folder.path("beat.take");
+  std::uint64_t hash = 0;
+  {
+    Show show(recorded);
+    send(show, "/route/add", "number", "/cue/waiting", "/physics/body/ball/part/p/linear_damping");
+    show.ticks(10);
+    send(show, "/cue/go");
+    EXPECT_EQ(current(show), 1);
+    tick_until_next_cue(show, 2);
+    EXPECT_EQ(show.engine.world().tick(), 61u) << "30 ticks after the first cue, then at the next beat";
+    const std::uint64_t tick = show.engine.world().tick();
+    const std::uint64_t there = show.engine.state_hash();
+    send(show, "/transport/step", -10);
+    EXPECT_EQ(show.read("/cue/waiting"), 2);
+    send(show, "/transport/play");
+    while (show.engine.world().tick() < tick) show.ticks(1);
+    EXPECT_EQ(show.engine.state_hash(), there);
+    hash = show.engine.state_hash();
+    show.engine.end_take();
+    show.engine.finish_saving();
+  }
+  folder.remove("scripts/scene.cues.json");
+  expect_replay(recorded.record, hash);
+}
+
+TEST_F(CueShow, AMessageStartsTheCueThatWaitsForIt) {
+  write(R"({"limber cues": 1, "cues": [
+    {"name": "a", "when": "/drum"}, {"name": "b", "when": "/scene/wind"}, {"name": "c"}]})");
+  Show show(options());
+  send(show, "/scene/wind", 1);
+  EXPECT_EQ(current(show), 0) << "it is not the next one";
+  send(show, "/drum", 0);
+  EXPECT_EQ(current(show), 0) << "a button was released";
+  show.sent_texts();
+  send(show, "/drum", 1);
+  EXPECT_EQ(current(show), 1);
+  EXPECT_FALSE(sent(show, "/error"));
+  send(show, "/drum", 1);
+  EXPECT_EQ(current(show), 1);
+  EXPECT_TRUE(sent(show, "/error /drum")) << "no cue waits for it";
+  send(show, "/scene/wind", 5);
+  EXPECT_EQ(current(show), 2);
+  EXPECT_EQ(show.read("/scene/wind"), 5) << "it has its usual effect";
 }
 
 TEST_F(CueShow, AResetKeepsTheCue) {

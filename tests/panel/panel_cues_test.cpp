@@ -66,6 +66,27 @@ TEST(PanelCues, KeysStartAndPauseCues) {
   EXPECT_EQ(panel.read("/cue/current"), 1);
 }
 
+TEST(PanelCues, TheClockIsPlayedFromThePanel) {
+  CuesFixture cues(kPanelCues);
+  PanelFixture& panel = *cues.fixture;
+  EXPECT_TRUE(panel.is_visible("clock.state"));
+  panel.click("clock.playing");
+  EXPECT_EQ(panel.read("/clock/playing"), 0);
+  panel.show.ticks(50);
+  const double beat = panel.read("/clock/beat");
+  panel.click("clock.playing");
+  panel.show.ticks(30);
+  EXPECT_GT(panel.read("/clock/beat"), beat + 0.9);
+  panel.click("clock.start");
+  EXPECT_LT(panel.read("/clock/beat"), 1);
+  panel.click("clock.tap");
+  const double tick = panel.read("/physics/sim/tick");
+  panel.show.ticks(25);
+  panel.key(GuiKey::f7);
+  const double ticks = panel.read("/physics/sim/tick") - tick;
+  EXPECT_NEAR(panel.read("/clock/tempo"), 3600 / ticks, 0.2 * 3600 / ticks) << "a beat in " << ticks << " ticks";
+}
+
 TEST(PanelCues, WithoutCuesTheButtonsAreOff) {
   CuesFixture cues("");
   PanelFixture& panel = *cues.fixture;

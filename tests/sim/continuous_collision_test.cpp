@@ -251,7 +251,6 @@ TEST(ContinuousCollision, AKinematicPaddlePassesNoBall) {
 }
 
 TEST(ContinuousCollision, IsTheSameForAnyNumberOfThreads) {
-  LIMBER_SKIP_IF(kAddressSanitizer, "the thread sanitizer checks it");
   const auto hash = [](int threads) {
     Store store;
     WorldSetup setup;

@@ -83,6 +83,8 @@ void add_network(CLI::App& play, NetworkOptions& o) {
                   "exit=blackout|hold, panic=hold|blackout.")
       ->type_name("artnet|sacn[:ADDR[:PORT]][,...]|off")
       ->allow_extra_args(false);
+  play.add_flag("--link", o.link,
+                "Join an Ableton Link session: sim.clock follows its beat, and other programs follow /clock/tempo.");
   play.add_flag("--osc-optional", o.osc_optional, "Continue if a port is not available.");
 }
 

@@ -17,6 +17,7 @@
 #include "engine/cues/cue_node.h"
 #include "engine/engine.h"
 #include "properties/property_text.h"
+#include "sim/clock/beat_clock.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/gears/gear.h"
 #include "sim/mocap/mocap_source.h"
@@ -78,7 +79,7 @@ std::vector<const PropertyTable*> described_classes() {
       &sim::World::table(),      &sim::Body::table(), &sim::Part::table(),   &sim::Joint::table(),
       &sim::Motor::table(),      &sim::Gear::table(), &sim::imu_table(),     &sim::range_finder_table(),
       &sim::zone_table(),        &sim::touch_table(), &sim::Tendon::table(), &sim::MocapSource::table(),
-      &sim::MocapJoint::table(), &sim::Route::table()};
+      &sim::MocapJoint::table(), &sim::Route::table(), &sim::BeatClock::table()};
   const sim::BehaviorTypes types;
   for (const auto& type : types.all()) {
     all.push_back(type->table);

@@ -30,6 +30,7 @@
 #include "engine/engine.h"
 #include "net/console/server.h"
 #include "net/lighting/output.h"
+#include "net/link/link_session.h"
 #include "net/osc/network.h"
 #include "script/scene/scene.h"
 
@@ -310,6 +311,7 @@ class Playing {
     if (options_.network.lights) {
       for (const std::string& line : lights_.status_lines()) print_notice("{}", line);
     }
+    if (options_.network.link && !options_.fast && options_.take.replay.empty()) link_session_.start();
     if (!options_.fast) open_console(console_);
     loop.set_retry([this, at] {
       retry_query(at, query_);
@@ -330,6 +332,7 @@ class Playing {
       guard.files_written();
       scene_loader_.reset();
       lights_.stop();
+      link_session_.stop();
       query_.stop();
       network_.stop();
       console_.stop();
@@ -348,6 +351,7 @@ class Playing {
   engine::Engine engine_;
   osc::Network network_;
   lighting::LightingOutput lights_;
+  link::LinkSession link_session_{link_, link_program()};
   console::ConsoleServer console_;
   std::optional<SceneLoader> scene_loader_;
   std::optional<RunFile> run_file_;

@@ -31,6 +31,7 @@ CommandExecutor::Execution CommandExecutor::execute(Message& message, const Comm
   std::optional<CueRequest> cue_request = session.cue_node.consume_request();
   if (outcome.kind == Outcome::Kind::cue_request) cue_request = {CueRequest::Kind::jump, message.args.front()};
   if (cue_request) outcome = source.request_cue(*cue_request);
+  if (source.starts_cue(message) && outcome.kind == Outcome::Kind::unknown) outcome = {};
   report(outcome, message, origin);
   const bool has_handlers = session.scene != nullptr && session.scene->has_handlers();
   const std::size_t work = session.dispatcher.writes().size() + message.args.size() / kArgumentsPerWork;

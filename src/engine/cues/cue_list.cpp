@@ -21,8 +21,9 @@ using CueJson = nlohmann::json;
 constexpr const char* kCueVersionKey = "limber cues";
 constexpr int kCueVersion = 1;
 constexpr int kMaxCueDepth = 8;  // of nested values
-constexpr std::array<std::string_view, 7> kCueFields = {"name",     "preset", "time", "easing",
-                                                        "messages", "follow", "note"};
+constexpr std::array<std::string_view, 9> kCueFields = {"name", "preset", "time", "easing", "messages",
+                                                        "at",   "when",   "follow", "note"};
+constexpr std::array<std::string_view, 3> kCueStarts = {"now", "beat", "bar"};  // in the order of CueStart
 
 std::string line_of(std::string_view text, std::size_t byte) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
@@ -54,7 +55,8 @@ class CueParser {
   Result<Cue> parse(const CueJson& json) {
     if (!json.is_object()) return Error{"must be an object, such as {\"name\": \"opening\"}"};
     if (const Result<void> known = check_fields(json); !known) return Error{known.error()};
-    for (const Result<void>& field : {parse_name(json), parse_preset(json), parse_messages(json), parse_follow(json)}) {
+    for (const Result<void>& field :
+         {parse_name(json), parse_preset(json), parse_messages(json), parse_start(json), parse_follow(json)}) {
       if (!field) return Error{field.error()};
     }
     return std::move(cue_);
@@ -110,6 +112,20 @@ class CueParser {
     return {};
   }
 
+  Result<void> parse_start(const CueJson& json) {
+    std::string at;
+    if (Result<void> text = parse_text(json, "at", at); !text) return text;
+    const auto known = std::ranges::find(kCueStarts, at);
+    if (!at.empty() && known == kCueStarts.end())
+      return Error{fmt::format("at: must be \"now\", \"beat\" or \"bar\", not '{}'", printable(shortened(at, 100)))};
+    if (!at.empty()) cue_.at = static_cast<CueStart>(known - kCueStarts.begin());
+    if (Result<void> text = parse_text(json, "when", cue_.when); !text) return text;
+    if (cue_.when.empty()) return {};
+    if (const Result<void> address = check_address(cue_.when); !address)
+      return Error{fmt::format("when: {}", address.error())};
+    return {};
+  }
+
   Result<void> parse_follow(const CueJson& json) {
     const CueJson* const follow = find(json, "follow");
     if (follow == nullptr) return {};
@@ -134,16 +150,20 @@ class CueParser {
     return {};
   }
 
+  static Result<void> check_address(const std::string& text) {
+    const std::string address = normalized_name(text);
+    if (!address.starts_with('/') || address.size() > Cue::kMaxText || printable(address) != address)
+      return Error{fmt::format("'{}' is not an address; it must begin with /", printable(shortened(text, 100)))};
+    if (address.starts_with("/cue/"))
+      return Error{"a cue can't control the cue list; set follow to continue with the next cue"};
+    return {};
+  }
+
   static Result<Message> parse_message(const CueJson& json) {
     if (!json.is_array() || json.empty() || !json[0].is_string())
       return Error{"must be a list of an address and its values, such as [\"/lighting/blackout\", 1]"};
     Message message{json[0].get<std::string>(), {}};
-    const std::string address = normalized_name(message.address);
-    if (!address.starts_with('/') || address.size() > Cue::kMaxText || printable(address) != address)
-      return Error{
-          fmt::format("'{}' is not an address; it must begin with /", printable(shortened(message.address, 100)))};
-    if (address.starts_with("/cue/"))
-      return Error{"a cue can't control the cue list; set follow to continue with the next cue"};
+    if (const Result<void> address = check_address(message.address); !address) return Error{address.error()};
     if (json.size() > Cue::kMaxArguments + 1)
       return Error{fmt::format("at most {} values in a message", Cue::kMaxArguments)};
     for (std::size_t i = 1; i < json.size(); i++) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,9 @@
 #include "engine/presets/morph.h"
 
 namespace limber::engine {
+
+/// When a cue that is started runs: at once, or at the next beat or bar of the clock.
+enum class CueStart : std::uint8_t { now, beat, bar };
 
 /// A step of a show: recalls a preset, then sends messages.
 struct Cue {
@@ -25,6 +29,8 @@ struct Cue {
   double time = 0;                 ///< Duration of the recall, s.
   Easing easing = Easing::smooth;  ///< Of the recall.
   std::vector<Message> messages;
+  CueStart at = CueStart::now;
+  std::string when;              ///< Address; its message starts this cue if it is the next one. Empty: none.
   std::optional<double> follow;  ///< Simulated seconds from this cue to the next one; nothing: it waits for GO.
   std::string note;              ///< For people.
 };

@@ -14,6 +14,9 @@ const PropertyTable& CueNode::table() {
                                     "Number of the cue that has run last, from 1; 0: none."))),
           transient(readout(number("follow", "s", 0, 0, kUnbounded,
                                    "Simulated time until the next cue starts by itself; 0: it waits for go."))),
+          transient(readout(integer("waiting", 0, 0, static_cast<double>(kMaxCues),
+                                    "Number of the cue that waits for its beat or bar; 0: none. Starting it again "
+                                    "runs it at once."))),
           transient(readout(boolean("paused", false, "True if the time until the next cue is paused."))),
           invokes<&CueNode::act_go>(action("go", 0, 0, "Starts the next cue.")),
           invokes<&CueNode::act_back>(action("back", 0, 0, "Starts the cue before the last one again.")),
@@ -35,7 +38,8 @@ void CueNode::publish() {
   double* const out = world_.store().mutable_values(id_, first);  // the readouts are contiguous
   out[0] = state.number;
   out[1] = state.ticks ? *state.ticks * world_.timestep() : 0;
-  out[2] = state.paused ? 1 : 0;
+  out[2] = state.waiting;
+  out[3] = state.paused ? 1 : 0;
 }
 
 Result<void> CueNode::act_go(std::span<const double>) {

@@ -15,7 +15,7 @@ namespace limber::engine {
 namespace {
 
 constexpr double kCueEvent = 3;  // after the kinds of TakeEvent, which have another number of arguments
-constexpr std::size_t kCueEventArgs = 5;
+constexpr std::size_t kCueEventArgs = 6;
 constexpr double kMaxCueTicks = 2e9;
 
 }  // namespace
@@ -76,19 +76,25 @@ Message message_of(const CueState& state) {
   return {"",
           {Arg::of(kCueEvent), Arg::of(static_cast<double>(state.number)),
            Arg::of(state.ticks ? static_cast<double>(*state.ticks) : -1.0), Arg::of(state.paused),
-           Arg::of(std::string_view(state.name))}};
+           Arg::of(std::string_view(state.name)), Arg::of(static_cast<double>(state.waiting))}};
 }
 
 std::optional<CueState> cue_state_of(const Message& message) {
   const std::vector<Arg>& args = message.args;
-  if (!message.address.empty() || args.size() != kCueEventArgs || args[0].number != kCueEvent) return std::nullopt;
+  // the first version had no cues that wait
+  const bool has_waiting = args.size() == kCueEventArgs;
+  if (!message.address.empty() || (!has_waiting && args.size() != kCueEventArgs - 1) || args[0].number != kCueEvent)
+    return std::nullopt;
   if (!std::ranges::all_of(args.begin(), args.begin() + 4, &Arg::is_numeric) || !args[4].is_text()) return std::nullopt;
+  const double waiting = has_waiting ? args[5].number : 0;
+  if (!(waiting >= 0 && waiting <= kMaxCues)) return std::nullopt;
   const double number = args[1].number;
   const double ticks = args[2].number;
   if (!(number >= 0 && number <= kMaxCues) || !(ticks >= -1 && ticks <= kMaxCueTicks) ||
       args[4].text.size() > Cue::kMaxText)
     return std::nullopt;
-  CueState state{static_cast<std::uint32_t>(number), args[4].text, {}, args[3].number != 0};
+  CueState state{static_cast<std::uint32_t>(number), args[4].text, {}, args[3].number != 0,
+                 static_cast<std::uint32_t>(waiting)};
   if (ticks >= 0) state.ticks = static_cast<std::uint32_t>(ticks);
   return state;
 }

@@ -27,6 +27,7 @@ struct CueState {
   std::string name;                    ///< Its name.
   std::optional<std::uint32_t> ticks;  ///< Ticks until the next cue starts by itself; nothing: it waits for GO.
   bool paused = false;                 ///< `ticks` doesn't count.
+  std::uint32_t waiting = 0;           ///< Number of the cue that waits for its beat, from 1; 0: none.
   bool operator==(const CueState&) const = default;
 };
 

@@ -20,26 +20,59 @@ Outcome CueRunner::request(const CueRequest& request) {
   return {};
 }
 
-int CueRunner::run_requested(const CommandOrigin& origin, InputSource& source) {
+bool CueRunner::starts(const Message& message) {
+  const CuePlayer& cues = show_.cues;
+  const std::uint32_t next = cues.position();
+  if (running_ || next >= cues.list()->size()) return false;
+  const std::string& when = (*cues.list())[next].when;
+  if (when.empty() || !same_address(message.address, when)) return false;
+  const bool released = !message.args.empty() && message.args[0].is_numeric() && message.args[0].number == 0;
+  if (!released) requested_cue_ = next;
+  return true;
+}
+
+int CueRunner::run_requested(InputSource& source) {
   if (const std::optional<bool> pause = std::exchange(requested_pause_, std::nullopt)) {
     CueState state = show_.cues.state();
     state.paused = *pause;
     set_state(std::move(state), source);
   }
   const std::optional<std::size_t> cue = std::exchange(requested_cue_, std::nullopt);
-  return cue ? run(*cue, origin, source) : 0;
+  return cue ? start(*cue, source) : 0;
 }
 
 void CueRunner::run_due(bool may_step, EditScope& edit_scope, InputSource& source) {
   Session& session = *show_.session;
   const bool steps = may_step && (!session.transport.paused() || session.transport.steps() > 0);
-  if (!show_.cues.due() || !steps || session.world.panic().on()) return;
-  const CommandOrigin origin{CommandSource::script};
-  edit_scope.begin(origin);
-  run(show_.cues.position(), origin, source);
+  if (!steps || session.world.panic().on()) return;
+  const std::uint32_t waiting = show_.cues.state().waiting;
+  const bool waits = waiting > 0 && waiting <= show_.cues.list()->size();  // the file may have become shorter
+  if (waits && beat_reached((*show_.cues.list())[waiting - 1].at)) {
+    edit_scope.begin({CommandSource::script});
+    run(waiting - 1, source);
+  } else if (show_.cues.due()) {
+    edit_scope.begin({CommandSource::script});
+    start(show_.cues.position(), source);
+  }
 }
 
-int CueRunner::run(std::size_t index, CommandOrigin origin, InputSource& source) {
+bool CueRunner::beat_reached(CueStart at) const {
+  const sim::BeatClock& clock = show_.session->world.behaviors().clock();
+  return at == CueStart::now || clock.reached(at == CueStart::beat ? 1 : clock.beats_per_bar());
+}
+
+// Runs a cue, or lets it wait for its beat; the second request for a cue that waits runs it at once.
+int CueRunner::start(std::size_t index, InputSource& source) {
+  const std::uint32_t number = static_cast<std::uint32_t>(index) + 1;
+  if (beat_reached((*show_.cues.list())[index].at) || show_.cues.state().waiting == number) return run(index, source);
+  CueState state = show_.cues.state();
+  state.waiting = number;
+  state.ticks.reset();
+  set_state(std::move(state), source);
+  return 1;
+}
+
+int CueRunner::run(std::size_t index, InputSource& source) {
   const Cue& cue = (*show_.cues.list())[index];
   CueState state{static_cast<std::uint32_t>(index) + 1, cue.name, {}, false};
   if (cue.follow) {
@@ -47,7 +80,8 @@ int CueRunner::run(std::size_t index, CommandOrigin origin, InputSource& source)
     state.ticks = static_cast<std::uint32_t>(std::clamp(ticks, 1.0, 1e9));
   }
   set_state(std::move(state), source);
-  origin.is_subscriber = false;  // its sender doesn't know the values that the cue sets, so it must receive them
+  // not that of the request, whose sender doesn't know the values that the cue sets
+  const CommandOrigin origin{CommandSource::script};
   running_ = true;
   int work = 1;
   for (Message& message : messages_of(cue)) work += 1 + executor_.execute(message, origin, source).work;

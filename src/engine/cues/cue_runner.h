@@ -16,13 +16,18 @@ class CueRunner {
 
   /// Accepts a request, which run_requested() executes: after the message that contains it.
   Outcome request(const CueRequest& request);
+  /// True if the next cue waits for this message. It then is requested, unless the message has the value 0, which
+  /// buttons send when they are released.
+  bool starts(const Message& message);
   /// Executes the accepted request, if there is one; returns its work in units of LiveInput::kPassWork.
-  int run_requested(const CommandOrigin& origin, InputSource& source);
-  /// Starts the next cue if its time has come. `may_step`: simulated time may advance in this pass.
+  int run_requested(InputSource& source);
+  /// Starts the next cue if its time or its beat has come. `may_step`: simulated time may advance in this pass.
   void run_due(bool may_step, EditScope& edit_scope, InputSource& source);
 
  private:
-  int run(std::size_t index, CommandOrigin origin, InputSource& source);
+  int start(std::size_t index, InputSource& source);
+  int run(std::size_t index, InputSource& source);
+  bool beat_reached(CueStart at) const;
   void set_state(CueState state, InputSource& source);
 
   ShowState& show_;

@@ -41,6 +41,8 @@ class InputSource {
   /// Accepts a request of a controller to start or pause cues. The default ignores it, because the messages of cues
   /// are recorded inputs themselves.
   virtual Outcome request_cue(const CueRequest&) { return {}; }
+  /// True if a cue waits for this message.
+  virtual bool starts_cue(const Message&) { return false; }
 
   /// Input of a run of the scene.
   struct SceneFiles {

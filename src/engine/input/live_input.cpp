@@ -2,6 +2,7 @@
 #include "engine/input/live_input.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/text.h"
@@ -125,14 +126,25 @@ int LiveInput::execute(Command& command, EditScope& edit_scope) {
       continue;
     }
     if (step_requests_.postpone(message, command.origin)) continue;
+    if (same_address(message.address, "/clock/sync")) correct_beat(message);
     const CommandExecutor::Execution execution = executor_.execute(message, command.origin, *this);
-    work += execution.work + cues_.run_requested(command.origin, *this);
+    work += execution.work + cues_.run_requested(*this);
     if (execution.applied && is_step) step_requests_.add(command.origin);
     if (execution.rewound) edit_scope.begin(command.origin);  // the undo stack was restored
   }
   if (command.evaluation == nullptr) return work;
   executor_.evaluate(*command.evaluation, command.origin, *this);
   return work + kEvaluationWork;
+}
+
+// Clocks of this machine send, as a third value, when their beat was (s, by the steady clock): the beat becomes that of
+// this pass, so that the time in the queue makes no difference.
+void LiveInput::correct_beat(Message& message) const {
+  std::vector<Arg>& args = message.args;
+  if (args.size() != 3 || !std::ranges::all_of(args, &Arg::is_numeric)) return;
+  const double age = show_.options.clock() - args[2].number;
+  if (show_.options.in_real_time() && std::abs(age) < 1) args[0] = Arg::of(args[0].number + age * args[1].number / 60);
+  args.pop_back();
 }
 
 bool LiveInput::discard_if_overtaken(const Message& message, std::uint64_t arrival) {

@@ -94,6 +94,7 @@ class LiveInput final : public InputSource {
   Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
   Outcome request_take(const Message& message) override { return recording_.request(message); }
   Outcome request_cue(const CueRequest& request) override { return cues_.request(request); }
+  bool starts_cue(const Message& message) override { return cues_.starts(message); }
   bool must_rerun() override;
   bool is_paced() const override;
   void end_pass() override;
@@ -112,6 +113,7 @@ class LiveInput final : public InputSource {
   void execute_urgent(EditScope& edit_scope);
   int execute(Command& command, EditScope& edit_scope);
   bool waits_for_ticks() const { return show_.options.lockstep && show_.session->transport.steps() > 0; }
+  void correct_beat(Message& message) const;
   bool discard_if_overtaken(const Message& message, std::uint64_t arrival);
   void reject_urgent(const char* reason, bool* stop);
   void reject(const Message& message, const CommandOrigin& origin, const char* reason, bool* stop);

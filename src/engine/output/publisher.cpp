@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "sim/behavior/behavior_list.h"
 #include "sim/fixtures/fixture_list.h"
 #include "sim/visuals/visuals.h"
 #include "sim/world/body.h"
@@ -75,6 +76,7 @@ void Publisher::publish(bool paused, double speed_factor, const PhaseTimes& time
     snapshot->visuals_version = version;
   }
   snapshot->dmx = world_.visuals().fixtures().frame();
+  snapshot->clock = world_.behaviors().clock().reading();
   snapshot->replayed = replayed;
   snapshot->overlay.clear();
   if (world_.visuals().overlay().on()) world_.visuals().overlay().collect(snapshot->overlay);

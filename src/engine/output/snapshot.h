@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/output/render_scene.h"
+#include "sim/clock/clock_reading.h"
 #include "sim/fixtures/dmx.h"
 #include "sim/visuals/overlay.h"
 
@@ -64,6 +65,7 @@ struct Snapshot {
   std::vector<double> visuals;            ///< For material_of(), camera_of(), appearance_of().
   std::uint64_t visuals_version = 0;      ///< Changes when `visuals` of the same `render_scene` may have changed.
   sim::DmxFrame dmx;                      ///< The values of the lighting fixtures.
+  sim::ClockReading clock;                ///< Musical time.
   bool replayed = false;                  ///< Made while a take was replayed.
   std::vector<sim::OverlayMark> overlay;  ///< Empty while the debug overlay is off.
 };

@@ -102,8 +102,6 @@ struct PresetSelection {
 
 /// A route in a preset. Its settings are values, like those of all nodes.
 struct PresetRoute {
-  static constexpr std::size_t kMax = 4096;  ///< Per preset, as many as a world has.
-
   std::string name;
   std::string from, to;
   bool operator==(const PresetRoute&) const = default;

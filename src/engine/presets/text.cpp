@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "sim/routes/route_list.h"
 
 namespace limber::engine {
 
@@ -297,7 +298,7 @@ class PresetParser : public Json::json_sax_t {
     if (route_.size() == kRouteTexts && builder_.add_route({route_[0], route_[1], route_[2]})) return;
     problem(
         fmt::format("preset '{}': a route must be a list of a unique name and two addresses, and there are at most {}",
-                    printable(name_), PresetRoute::kMax));
+                    printable(name_), sim::RouteList::kMaxRoutes));
   }
 
   void report_unexpected(const Json& v) {

@@ -276,7 +276,7 @@ bool SceneDiff::empty() const {
   const auto all_existed = [](const std::vector<std::optional<std::size_t>>& indices) {
     return std::ranges::all_of(indices, [](const auto& index) { return index.has_value(); });
   };
-  const bool same_values = (world | visuals | camera | appearance) == 0;
+  const bool same_values = std::ranges::all_of(singles, [](std::uint64_t changed) { return changed == 0; });
   const bool same_objects =
       shapes.empty() && bodies.empty() && all_existed(old_shape_indices) && all_existed(old_body_indices);
   const auto all_none = [](const auto&... lists) { return (lists.empty() && ...); };
@@ -398,10 +398,8 @@ void compare_objects(const SceneSpec& before, const SceneSpec& now, SceneDiff& o
 
 SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
   SceneDiff out;
-  out.world = changed_mask(before.world, now.world);
-  out.visuals = changed_mask(before.visuals, now.visuals);
-  out.camera = changed_mask(before.camera, now.camera);
-  out.appearance = changed_mask(before.appearance, now.appearance);
+  for (std::size_t i = 0; i < kSingleNodes; i++)
+    out.singles[i] = changed_mask(before.singles[i], now.singles[i]);
   out.old_shape_indices = match(
       before.shapes, now.shapes, [](const auto& s) { return std::string_view(s->name); }, out.removed_shapes);
   out.old_body_indices = match(

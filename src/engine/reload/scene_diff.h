@@ -4,6 +4,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -66,10 +67,7 @@ struct ObjectDiffs {
 };
 
 struct SceneDiff {
-  std::uint64_t world = 0;                                    ///< Properties of the world to set.
-  std::uint64_t visuals = 0;                                  ///< Properties of the background to set.
-  std::uint64_t camera = 0;                                   ///< Properties of the camera to set.
-  std::uint64_t appearance = 0;                               ///< Properties of the appearance to set.
+  std::array<std::uint64_t, kSingleNodes> singles{};          ///< Properties of the single_nodes() to set.
   std::vector<std::optional<std::size_t>> old_shape_indices;  ///< For each new shape its index in the old spec.
   std::vector<std::optional<std::size_t>> old_body_indices;   ///< For each new body its index in the old spec.
   std::vector<ShapeDiff> shapes;                              ///< Changed shapes, without added ones.

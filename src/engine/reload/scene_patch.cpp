@@ -104,11 +104,9 @@ class PatchApplier {
   explicit PatchApplier(const ScenePatch& patch) : patch_(patch), store_(patch.world.store()) {}
 
   void run(LiveObjects& objects) {
-    set_properties(patch_.candidate.id(), patch_.world.id(), patch_.diff.world);
-    const sim::Visuals& visuals = patch_.candidate.visuals();
-    set_properties(visuals.id(), patch_.world.visuals().id(), patch_.diff.visuals);
-    set_properties(visuals.camera().id(), patch_.world.visuals().camera().id(), patch_.diff.camera);
-    set_properties(visuals.appearance().id(), patch_.world.visuals().appearance().id(), patch_.diff.appearance);
+    const std::array<NodeId, kSingleNodes> candidates = single_nodes(patch_.candidate);
+    const std::array<NodeId, kSingleNodes> live = single_nodes(patch_.world);
+    for (std::size_t i = 0; i < kSingleNodes; i++) set_properties(candidates[i], live[i], patch_.diff.singles[i]);
     remove_bodies(objects);
     apply_shapes(objects);
     apply_bodies(objects);

@@ -138,17 +138,22 @@ BodyDescription describe_body(const sim::Body& body) {
   return body_of(body, shapes);
 }
 
+std::array<NodeId, kSingleNodes> single_nodes(const sim::World& world) {
+  const sim::Visuals& visuals = world.visuals();
+  return {world.id(), visuals.id(), visuals.camera().id(), visuals.appearance().id(), world.behaviors().clock().id()};
+}
+
 SceneSpec describe(const sim::World& world) {
   SceneSpec out;
-  out.world = spec_values_of(world.store(), world.id());
-  out.visuals = spec_values_of(world.store(), world.visuals().id());
-  out.camera = spec_values_of(world.store(), world.visuals().camera().id());
-  if (world.visuals().camera().has_framed_pose()) {
-    std::erase_if(out.camera, [](const SpecValue& value) {
+  const std::array<NodeId, kSingleNodes> singles = single_nodes(world);
+  for (std::size_t i = 0; i < kSingleNodes; i++) {
+    out.singles[i] = spec_values_of(world.store(), singles[i]);
+    const sim::Camera& camera = world.visuals().camera();
+    if (singles[i] != camera.id() || !camera.has_framed_pose()) continue;
+    std::erase_if(out.singles[i], [](const SpecValue& value) {
       return !value.is_set && (sim::Camera::pose_mask() >> value.property & 1u) != 0;
     });
   }
-  out.appearance = spec_values_of(world.store(), world.visuals().appearance().id());
   Shapes shapes;
   for (const auto& shape : world.shapes().list()) {
     out.shapes.push_back(describe_shape(world.store(), *shape));

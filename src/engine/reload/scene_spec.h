@@ -134,11 +134,13 @@ struct BodyDescription {
   std::vector<PairDescription> pairs;
   std::vector<BehaviorDescription> behaviors;
 };
+
+/// The nodes with settings that each world has once: the world, background, camera, appearance, clock.
+inline constexpr std::size_t kSingleNodes = 5;
+std::array<NodeId, kSingleNodes> single_nodes(const sim::World& world);
+
 struct SceneSpec {
-  SpecValues world;
-  SpecValues visuals;
-  SpecValues camera;
-  SpecValues appearance;
+  std::array<SpecValues, kSingleNodes> singles;  ///< Of single_nodes().
   std::vector<std::shared_ptr<const ShapeDescription>> shapes;
   std::vector<BodyDescription> bodies;
   std::vector<GearDescription> gears;

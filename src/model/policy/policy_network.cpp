@@ -123,10 +123,10 @@ std::span<const std::string_view> policy_activations() {
   return kNames;
 }
 
-Result<PolicyStep> policy_activation(std::string_view name) {
+std::optional<PolicyStep> policy_activation(std::string_view name) {
   const std::span<const std::string_view> names = policy_activations();
   const auto found = std::ranges::find(names, name);
-  if (found == names.end()) return Error{""};
+  if (found == names.end()) return std::nullopt;
   PolicyStep step;
   step.kind = static_cast<Kind>(static_cast<int>(Kind::relu) + static_cast<int>(found - names.begin()));
   // PyTorch's defaults

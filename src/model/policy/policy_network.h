@@ -127,6 +127,6 @@ class PolicyBuilder {
 /// The names of activations in files ("relu", "tanh", …), in the order of Kind from relu on.
 std::span<const std::string_view> policy_activations();
 /// The step of an activation's name; empty if there is none. Its parameter is the usual one.
-Result<PolicyStep> policy_activation(std::string_view name);
+std::optional<PolicyStep> policy_activation(std::string_view name);
 
 }  // namespace limber::model

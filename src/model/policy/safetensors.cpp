@@ -138,7 +138,7 @@ class SafetensorsReader {
   Result<void> read_header(std::string_view bytes);
   Result<void> read_metadata(const Json& metadata);
   Result<void> build();
-  Result<void> find_layers();
+  void find_layers();
   Result<std::vector<std::string>> ordered_layers() const;
   Result<void> add_layers();
   Result<void> add_listed_layers(std::string_view list);
@@ -198,7 +198,7 @@ Result<void> SafetensorsReader::read_metadata(const Json& metadata) {
   return {};
 }
 
-Result<void> SafetensorsReader::find_layers() {
+void SafetensorsReader::find_layers() {
   static constexpr std::string_view kVectors[] = {"input_mean", "input_std", "output_scale", "output_offset"};
   for (const auto& [name, tensor] : tensors_) {
     if (std::ranges::find(kVectors, std::string_view(name)) != std::end(kVectors)) continue;
@@ -213,7 +213,6 @@ Result<void> SafetensorsReader::find_layers() {
     layer.is_gru = layer.is_gru || role->is_gru;
     layer.*(role->tensor) = &tensor;
   }
-  return {};
 }
 
 // The layers by the numbers at the end of their names, which must be equal before; a GRU first.
@@ -254,7 +253,7 @@ Result<std::vector<std::string>> SafetensorsReader::ordered_layers() const {
 
 Result<void> SafetensorsReader::add_activation(std::string_view name, std::string_view key) {
   if (name == "none") return {};
-  const Result<PolicyStep> step = policy_activation(name);
+  const std::optional<PolicyStep> step = policy_activation(name);
   if (step) return builder_.elementwise(name, step->kind, step->a, step->b);
   std::vector<std::string_view> names(policy_activations().begin(), policy_activations().end());
   names.emplace_back("none");
@@ -373,7 +372,7 @@ Result<void> SafetensorsReader::add_inputs() {
 }
 
 Result<void> SafetensorsReader::build() {
-  if (Result<void> found = find_layers(); !found) return found;
+  find_layers();
   if (Result<void> added = add_inputs(); !added) return added;
   if (Result<void> added = add_layers(); !added) return added;
   if (const std::string* output = metadata("output")) {

@@ -52,6 +52,9 @@
 ---A policy computes actions from observations, with the same bits on every machine. [Policies](../../howto/policies.md)
 ---shows how to export and use them.
 
+---@page clock Musical time: beats, bars and tempo, for motion in time with music.
+---The beats pass by themselves, or another program leads them. [Musical time](../../howto/clock.md) shows how to use them.
+
 ---@page routes Routes: let readouts and settings set other properties, without code in each tick.
 ---A route reads a property and sets another one, in each tick. It is a node of the property tree: its settings are OSC
 ---addresses, and presets, undo and takes contain them. [Routes](../../howto/routes.md) shows how to use them.

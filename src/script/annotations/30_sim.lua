@@ -6,6 +6,7 @@
 ---@class sim
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
+---@field clock clock # read-only. Musical time: beats, bars and tempo.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
 ---@field fixtures fixture_list # read-only. All lighting fixtures, in the order of their creation; call it to iterate over those that match a pattern.
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
@@ -294,6 +295,15 @@ function sim:on_start(f) end
 ---@see sim:every, sim.timestep
 ---@example callbacks
 function sim:on_step(f) end
+
+---Calls f on each beat of `sim.clock`, before the physics step. With `every`: at each multiple of that many beats, such
+---as 0.25 for sixteenth notes, or 4. Not more often than once in a tick.
+---@param f fun(beat: number) # The function to call; beat is the beat that was reached.
+---@param every? number # Beats, from 1/64 to 4096. Default 1.
+---@error sim:on_beat(print, 0) --> sim:on_beat takes 1/64 to 4096 beats, not 0
+---@see sim.clock, sim:every
+---@example clock
+function sim:on_beat(f, every) end
 
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
 ---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.

@@ -6,6 +6,7 @@
 #include "properties/values_hash.h"
 #include "script/behaviors/behavior_scripts.h"
 #include "script/vm/guard.h"
+#include "sim/clock/beat_clock.h"
 #include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
 #include "sim/routes/route.h"
@@ -123,6 +124,7 @@ std::string label_of(const ScriptContext& c, NodeId id) {
   if (table == &sim::Visuals::table()) return "visuals";
   if (table == &sim::Camera::table()) return "visuals.camera";
   if (table == &sim::Appearance::table()) return "visuals.look";
+  if (table == &sim::BeatClock::table()) return "sim.clock";
   const std::string& name = store.name(id);
   if (table == &sim::Body::table() || table == &sim::Shape::table() || table == &sim::Gear::table() ||
       table == &sim::Fixture::table() || table == &sim::Route::table())

@@ -246,4 +246,12 @@ void handles(void* c, std::int32_t** ids, std::int32_t count) {
   context_of(c).arguments.handle_ids = {ids, static_cast<std::size_t>(count)};
 }
 
+std::int32_t beat_reached(void* c, double every) {
+  ScriptContext& context = context_of(c);
+  const std::optional<double> reached = context.world->behaviors().clock().reached(every);
+  if (!reached) return kRejected;
+  context.answer.number[0] = *reached;
+  return kOk;
+}
+
 }  // namespace limber::script::calls

@@ -58,7 +58,7 @@ local function call_all(list, a, b, c, d)
 end
 jit.off(call_all)
 
-local starts, steps, timers = {}, {}, {}
+local starts, steps, beats, timers = {}, {}, {}, {}
 local contacts = { [0] = {}, {}, {} }  -- by phase: begin, stay, end
 
 method("on_start", function(_, f)
@@ -68,6 +68,14 @@ end)
 method("on_step", function(_, f)
   P.check_function(f, "sim:on_step")
   add(steps, { f = f }, "sim:on_step")
+end)
+method("on_beat", function(_, f, every)
+  P.check_function(f, "sim:on_beat")
+  every = every == nil and 1 or P.check_number(every, "sim:on_beat")
+  if not (every >= 1 / 64 and every <= 4096) then
+    fail("sim:on_beat takes 1/64 to 4096 beats, not %s", P.describe(every))
+  end
+  add(beats, { f = f, every = every }, "sim:on_beat")
 end)
 for phase, name in pairs { [0] = "on_contact", "on_contact_stay", "on_contact_end" } do
   local subject = "sim:" .. name
@@ -196,7 +204,7 @@ end
 function P.exports.retire()
   earlier = true
   local removed = P.remove_handlers()
-  for _, list in ipairs { steps, contacts[0], contacts[1], contacts[2], zones[0], zones[1] } do
+  for _, list in ipairs { steps, beats, contacts[0], contacts[1], contacts[2], zones[0], zones[1] } do
     for _, callback in ipairs(list) do
       if callback.in_callback and not callback.disabled then removed = removed + 1 end
     end
@@ -282,6 +290,18 @@ local function run_timers()
 end
 jit.off(run_timers)
 
+local function run_beats()
+  for i = 1, #beats do
+    local callback = beats[i]
+    local reached = not callback.disabled and P.beat_reached(callback.every)
+    if reached and not guarded(callback.f, reached * callback.every) then
+      callback.disabled = true
+      api.report(ctx)
+    end
+  end
+end
+jit.off(run_beats)
+
 local function run_contacts(phase)
   local list = contacts[phase]
   if #list == 0 then return end
@@ -323,6 +343,7 @@ function P.exports.tick(dt)
   for phase = 0, 2 do run_contacts(phase) end
   run_zones(1)
   run_zones(0)
+  run_beats()
   call_all(steps, dt)
   if P.sample_row then P.sample_row() end
   P.report_fallbacks()

@@ -17,6 +17,7 @@ ffi.cdef [[
   typedef struct visuals { const int32_t slot_, generation_; } visuals;
   typedef struct camera { const int32_t slot_, generation_; } camera;
   typedef struct look { const int32_t slot_, generation_; } look;
+  typedef struct clock { const int32_t slot_, generation_; } clock;
   typedef struct gear { const int32_t slot_, generation_; } gear;
   typedef struct imu { const int32_t slot_, generation_; } imu;
   typedef struct range_finder { const int32_t slot_, generation_; } range_finder;

@@ -13,7 +13,7 @@ local function class_of_table(number) return by_table[number] or P.make_class(nu
 P.class_of_table = class_of_table
 -- the classes of c_api's class_table, in its order
 P.class_names = { "sim", "body", "part", "joint", "motor", "shape", "visuals", "camera", "look", "gear", "imu",
-  "range_finder", "zone", "touch", "tendon", "fixture", "mocap", "mocap_joint", "route" }
+  "range_finder", "zone", "touch", "tendon", "fixture", "mocap", "mocap_joint", "route", "clock" }
 for i, name in ipairs(P.class_names) do
   local class = { name = name, ctype = ffi.typeof(name), getters = {}, setters = {}, methods = {}, properties = {} }
   class.number = i - 1
@@ -55,7 +55,7 @@ function P.update_classes()
   end)
 end
 -- names of singletons in error messages
-classes.sim.only, classes.visuals.only = "sim", "visuals"
+classes.sim.only, classes.visuals.only, classes.clock.only = "sim", "visuals", "sim.clock"
 classes.camera.only, classes.look.only = "visuals.camera", "visuals.look"
 
 -- Handles: one for each slot, so that an object is always the same table key. Names remain after an object is removed.

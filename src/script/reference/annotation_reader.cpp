@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "sim/clock/beat_clock.h"
 #include "sim/fixtures/fixture.h"
 #include "sim/gears/gear.h"
 #include "sim/mocap/mocap_source.h"
@@ -159,12 +160,12 @@ AnnotatedPage& open_page(std::vector<AnnotatedPage>& pages, BlockReader& reader)
 }  // namespace
 
 const PropertyTable& annotated_class(std::string_view name) {
-  const std::array<const PropertyTable*, 19> classes = {
+  const std::array<const PropertyTable*, 20> classes = {
       &sim::World::table(),       &sim::Body::table(),       &sim::Part::table(),    &sim::Joint::table(),
       &sim::Motor::table(),       &sim::Shape::table(),      &sim::Visuals::table(), &sim::Camera::table(),
       &sim::Appearance::table(),  &sim::Gear::table(),       &sim::imu_table(),      &sim::range_finder_table(),
       &sim::zone_table(),         &sim::touch_table(),       &sim::Tendon::table(),  &sim::Fixture::table(),
-      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table()};
+      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table(),  &sim::BeatClock::table()};
   for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }

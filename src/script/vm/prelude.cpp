@@ -31,6 +31,7 @@ std::span<const std::string_view> prelude_order() {
       "nodes/fixtures.lua",
       "nodes/mocap.lua",
       "nodes/routes.lua",
+      "nodes/clock.lua",
       "policies.lua",
       "visuals.lua",
       "callbacks.lua",

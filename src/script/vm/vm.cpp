@@ -14,6 +14,7 @@
 #include "script/behaviors/behavior_scripts.h"
 #include "script/scene/scene.h"
 #include "script/vm/text_check.h"
+#include "sim/behavior/behavior_list.h"
 #include "sim/visuals/visuals.h"
 
 namespace limber::script {
@@ -116,6 +117,7 @@ void Vm::load_prelude(ScriptContext& context) {
   set_id_fields("visuals", visuals.id());
   set_id_fields("camera", visuals.camera().id());
   set_id_fields("look", visuals.appearance().id());
+  set_id_fields("clock", context.world->behaviors().clock().id());
   const auto guard_function = [&](const char* name, lua_CFunction function) {
     lua_pushlightuserdata(L, &guard_);
     lua_pushcclosure(L, function, 1);

@@ -30,7 +30,10 @@ void warn_unused_targets(const BehaviorType& type, const Body& body, std::string
 }  // namespace
 
 BehaviorList::BehaviorList(World& world, NodeId physics)
-    : world_(world), group_node_(world.store().add_group(physics, "group")), routes_(world.store(), physics) {
+    : world_(world),
+      group_node_(world.store().add_group(physics, "group")),
+      routes_(world.store(), physics),
+      clock_(world) {
   routes_.set_transaction(world.transaction());
 }
 
@@ -309,6 +312,7 @@ void BehaviorList::replace_instances(std::string_view type_name) {
 
 void BehaviorList::serialize(Archive& archive) {
   routes_.serialize(archive);
+  clock_.serialize(archive);
   for (const StepEntry& entry : entries_) {
     if (entry.single != nullptr) entry.single->serialize_all(archive);
     if (entry.group != nullptr) entry.group->serialize(archive);
@@ -316,7 +320,7 @@ void BehaviorList::serialize(Archive& archive) {
 }
 
 std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {
-  hash = routes_.state_hash(hash);
+  hash = clock_.state_hash(routes_.state_hash(hash));
   for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) hash = entry.group->state_hash(hash);
   }

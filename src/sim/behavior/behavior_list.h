@@ -14,6 +14,7 @@
 #include "sim/behavior/behavior_order.h"
 #include "sim/behavior/behavior_transaction.h"
 #include "sim/behavior/behavior_type.h"
+#include "sim/clock/beat_clock.h"
 #include "sim/neighbors/neighbor_set.h"
 #include "sim/routes/route_list.h"
 
@@ -29,6 +30,8 @@ class BehaviorList {
   /// The routes of the world.
   RouteList& routes() { return routes_; }
   const RouteList& routes() const { return routes_; }
+  BeatClock& clock() { return clock_; }
+  const BeatClock& clock() const { return clock_; }
   BehaviorTypes& types() { return types_; }
   const BehaviorTypes& types() const { return types_; }
 
@@ -112,6 +115,7 @@ class BehaviorList {
   NodeId group_node_;
   BehaviorTypes types_;
   RouteList routes_;
+  BeatClock clock_;
   std::vector<StepEntry> entries_;
   BehaviorOrder order_{world_, entries_};
   std::vector<RemovedBehavior> retired_;  // removed while behaviors were stepped

@@ -15,8 +15,6 @@ namespace limber::sim {
 
 namespace {
 
-constexpr std::size_t kMaxRoutes = 4096;
-
 Result<void> check_ends(std::string_view name, std::string_view from, std::string_view to) {
   const std::string subject = fmt::format("route '{}'", name);
   if (const Result<void> valid = check_route_address(subject + ": from", from); !valid) return valid;

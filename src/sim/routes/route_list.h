@@ -19,6 +19,8 @@ class WorldTransaction;
 
 class RouteList {
  public:
+  static constexpr std::size_t kMaxRoutes = 4096;
+
   RouteList(Store& store, NodeId parent);
 
   std::span<const std::unique_ptr<Route>> list() const { return routes_.list(); }

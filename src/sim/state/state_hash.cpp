@@ -74,7 +74,8 @@ std::uint64_t body_hash(const Body& body, std::uint64_t start) {
 
 std::uint64_t World::state_hash() const {
   std::uint64_t fixed = visuals_->camera().settings_hash();
-  for (const NodeId id : {id_, visuals_->id(), visuals_->appearance().id()}) fixed += fixed_node_hash(store_, id);
+  for (const NodeId id : {id_, visuals_->id(), visuals_->appearance().id(), behaviors_->clock().id()})
+    fixed += fixed_node_hash(store_, id);
   NumberHash numbers(hash_bytes(panic_.on() ? "panic" : "limber") + fixed);
   for (const auto& shape : shapes_->list()) numbers.add_word(persistent_hash(store_, shape->id()));
   for (const auto& gear : gears().list()) numbers.add_word(persistent_hash(store_, gear->id()));

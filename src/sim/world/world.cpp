@@ -276,6 +276,7 @@ TickTimes World::step() {
   sensing_->end_contacts();
   store_.mutable_values(id_, *world_properties().time)[0] = state_.end_tick(timestep(), time());
   store_.mutable_values(id_, *world_properties().tick)[0] = static_cast<double>(state_.tick);
+  behaviors_->clock().step();
   publish_solver_counts(*this, previous_counts);
   store_.mutable_values(id_, *world_properties().sleeping)[0] = bullet_->sleep().sleeping();
   awake_bodies_.publish();

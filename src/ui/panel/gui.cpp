@@ -55,6 +55,7 @@ const char* toggled_path(HotkeyAction action) {
 const char* sent_address(HotkeyAction action) {
   if (action == HotkeyAction::reset) return "/transport/reset";
   if (action == HotkeyAction::next_cue) return "/cue/go";
+  if (action == HotkeyAction::tap_tempo) return "/clock/tap";
   if (action == HotkeyAction::previous_cue) return "/cue/back";
   return action == HotkeyAction::pause_cues ? "/cue/pause" : nullptr;
 }

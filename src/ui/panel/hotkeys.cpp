@@ -49,6 +49,7 @@ constexpr std::array kHotkeys = {
     Hotkey{{GuiKey::f5, {}}, A::next_cue, "cue_go", "Start the next cue", true, 1, true},
     Hotkey{{GuiKey::f5, kShift}, A::previous_cue, "cue_back", "Start the cue before the last one again", true, 1, true},
     Hotkey{{GuiKey::f6, {}}, A::pause_cues, "cue_pause", "Pause or resume the time until the next cue", true, 1, true},
+    Hotkey{{GuiKey::f7, {}}, A::tap_tempo, "tap", "Tap the tempo: press it on each beat", true, 1, true},
     Hotkey{{GuiKey::f10, {}}, A::toggle_output_window, "output", "Open or close the output window", true},
     Hotkey{{GuiKey::f11, {}},
            A::toggle_full_screen,

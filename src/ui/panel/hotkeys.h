@@ -35,6 +35,7 @@ enum class HotkeyAction : std::uint8_t {
   next_cue,
   previous_cue,
   pause_cues,
+  tap_tempo,
   move_behavior_earlier,
   move_behavior_later,
   toggle_output_window,

@@ -164,9 +164,9 @@ int TcpPeers::send(const Endpoint& to, std::span<const char> packet) {
   Connection* const connection = find(to);
   if (connection == nullptr) return ENOTCONN;
   if (connection->output.size() + packet.size() > kMaxUnsent) return ENOBUFS;
+  const bool was_empty = connection->output.empty();
   append_framed(connection->input.framing(), packet, connection->output);
-  // the socket usually has room; the rest is written by work()
-  if (connection->output.size() <= packet.size() * 2 + 8) write(*connection);
+  if (was_empty) write(*connection);  // else work() writes it when the socket has room
   return 0;
 }
 

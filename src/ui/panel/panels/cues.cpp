@@ -1,5 +1,6 @@
-// Cues: the list of cues, the one that has run last, and the buttons that start and pause them.
+// Cues: the list of cues, the one that has run last, the buttons that start and pause them, and the clock.
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,7 @@
 #include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/number_slider.h"
+#include "ui/panel/widgets/property_widget.h"
 
 namespace limber::panel {
 
@@ -28,6 +30,7 @@ class CuesPanel : public Panel {
     const auto handle = context.find("/cue/names");
     const std::string_view names = handle ? context.text(handle->ref) : std::string_view();
     draw_buttons(context, names.empty());
+    draw_clock(context);
     if (!ImGui::BeginChild("##cues", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     if (names.empty()) ImGui::TextDisabled("No cues: write them to a file beside the scene, SCENE.cues.json");
     const auto current = static_cast<int>(context.number("/cue/current"));
@@ -57,14 +60,52 @@ class CuesPanel : public Panel {
                 "Pause or resume the time until the next cue starts by itself (F6)");
     ImGui::EndDisabled();
     const double follow = context.number("/cue/follow");
+    const double waiting = context.number("/cue/waiting");
     ImGui::AlignTextToFramePadding();
-    if (follow > 0) {
+    if (waiting > 0) {
+      ImGui::Text("%.0f waits for its beat", waiting);
+    } else if (follow > 0) {
       ImGui::Text("%s in %.1f s", paused ? "Paused: next" : "Next", follow);
     } else {
       ImGui::TextDisabled(paused ? "Paused" : "Waits for Go");
     }
     context.names.add("cues.state");
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("Simulated time until the next cue starts by itself");
+  }
+
+  // The beat as a lamp that is bright at its start, the tempo, and its buttons.
+  static void draw_clock(GuiContext& context) {
+    const auto tempo = context.find("/clock/tempo");
+    if (!tempo) return;
+    const double beat = context.number("/clock/beat");
+    const double beats_per_bar = std::max(context.number("/clock/beats_per_bar"), 1.0);
+    const double beat_in_bar = std::floor(beat) - std::floor(beat / beats_per_bar) * beats_per_bar;  // from 0
+    const bool playing = context.number("/clock/playing") != 0;
+    if (ImGui::Button(playing ? "Stop###clock" : "Play###clock")) context.toggle("/clock/playing");
+    context.names.add("clock.playing");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Stop the beat, or continue");
+    ImGui::SameLine();
+    draw_button(context, "Start", "/clock/start", "clock.start", "Start again at beat 0");
+    draw_button(context, "Tap", "/clock/tap", "clock.tap", "Tap the tempo: click it on each beat (F7)");
+    property_widget(context, *tempo, 90 * static_cast<float>(context.scale));
+    context.names.add("clock.tempo");
+    property_menu(context, *tempo);
+    ImGui::SameLine();
+    ImGui::AlignTextToFramePadding();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float size = ImGui::GetFrameHeight();
+    const auto fading = static_cast<float>(1 - (beat - std::floor(beat)));
+    const ImU32 color = packed_color(beat_in_bar == 0 ? ThemeColor::accent : ThemeColor::text,
+                                     playing ? fading : 0.1F);
+    ImGui::GetWindowDrawList()->AddCircleFilled({at.x + size / 2, at.y + size / 2}, size / 4, color);
+    ImGui::Dummy({size, size});
+    ImGui::SameLine();
+    ImGui::Text("%.0f.%.0f  %.1f", context.number("/clock/bar") + 1, beat_in_bar + 1,
+                context.number("/clock/current_tempo"));
+    context.names.add("clock.state");
+    if (ImGui::IsItemHovered())
+      ImGui::SetTooltip("Bar and beat, and the tempo now%s",
+                        context.number("/clock/synced") != 0 ? ": another program leads the clock" : "");
   }
 
   // One line: number and name. The current cue is scrolled to when it has changed.

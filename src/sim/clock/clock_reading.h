@@ -1,0 +1,14 @@
+// ClockReading: the state of musical time, for snapshots. [any]
+#pragma once
+
+namespace limber::sim {
+
+struct ClockReading {
+  double beat = 0;
+  double tempo = 120;      ///< Beats per minute at which they pass.
+  double set_tempo = 120;  ///< The setting.
+  double beats_per_bar = 4;
+  bool playing = true;
+};
+
+}  // namespace limber::sim
