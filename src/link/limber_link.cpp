@@ -14,9 +14,9 @@
 #include <string>
 #include <string_view>
 
-#include <ableton/Link.hpp>
 #include <poll.h>
 #include <unistd.h>
+#include <ableton/Link.hpp>
 
 namespace {
 

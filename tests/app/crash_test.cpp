@@ -5,9 +5,7 @@
 namespace limber::app::test {
 namespace {
 
-TEST(Crash, KilledShowLosesNoSavedData) {
-  crash(10, 10);
-}
+TEST(Crash, KilledShowLosesNoSavedData) { crash(10, 10); }
 
 struct SignalledShow {
   TempFolder folder;

@@ -40,9 +40,10 @@ constexpr std::array kModules{
     Module{"lib", "properties model sim script engine"},
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
-    Module{"app",
-           "properties model sim script engine net/osc net/lighting net/link net/console net/oscquery ui/render ui/panel "
-           "export experiments"},
+    Module{
+        "app",
+        "properties model sim script engine net/osc net/lighting net/link net/console net/oscquery ui/render ui/panel "
+        "export experiments"},
 };
 
 /// Folders that only files of their own module include.

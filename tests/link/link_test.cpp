@@ -133,8 +133,7 @@ TEST(LinkSession, AMissingProgramIsReportedOnceWithACorrection) {
   const std::uint64_t before = log_newest();
   session.start();
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);
-  while (log_newest() == before && std::chrono::steady_clock::now() < limit)
-    std::this_thread::yield();
+  while (log_newest() == before && std::chrono::steady_clock::now() < limit) std::this_thread::yield();
   session.stop();
   const std::vector<LogLine> lines = log_since(before);
   ASSERT_EQ(lines.size(), 1u);

@@ -76,9 +76,9 @@ constexpr const char* kHeader = "address\tlegacy address\tkind\ttype\tunit\trang
 
 std::vector<const PropertyTable*> described_classes() {
   std::vector<const PropertyTable*> all = {
-      &sim::World::table(),      &sim::Body::table(), &sim::Part::table(),   &sim::Joint::table(),
-      &sim::Motor::table(),      &sim::Gear::table(), &sim::imu_table(),     &sim::range_finder_table(),
-      &sim::zone_table(),        &sim::touch_table(), &sim::Tendon::table(), &sim::MocapSource::table(),
+      &sim::World::table(),      &sim::Body::table(),  &sim::Part::table(),     &sim::Joint::table(),
+      &sim::Motor::table(),      &sim::Gear::table(),  &sim::imu_table(),       &sim::range_finder_table(),
+      &sim::zone_table(),        &sim::touch_table(),  &sim::Tendon::table(),   &sim::MocapSource::table(),
       &sim::MocapJoint::table(), &sim::Route::table(), &sim::BeatClock::table()};
   const sim::BehaviorTypes types;
   for (const auto& type : types.all()) {

@@ -21,7 +21,7 @@ using CueJson = nlohmann::json;
 constexpr const char* kCueVersionKey = "limber cues";
 constexpr int kCueVersion = 1;
 constexpr int kMaxCueDepth = 8;  // of nested values
-constexpr std::array<std::string_view, 9> kCueFields = {"name", "preset", "time", "easing", "messages",
+constexpr std::array<std::string_view, 9> kCueFields = {"name", "preset", "time",   "easing", "messages",
                                                         "at",   "when",   "follow", "note"};
 constexpr std::array<std::string_view, 3> kCueStarts = {"now", "beat", "bar"};  // in the order of CueStart
 

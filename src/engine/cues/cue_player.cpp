@@ -93,8 +93,8 @@ std::optional<CueState> cue_state_of(const Message& message) {
   if (!(number >= 0 && number <= kMaxCues) || !(ticks >= -1 && ticks <= kMaxCueTicks) ||
       args[4].text.size() > Cue::kMaxText)
     return std::nullopt;
-  CueState state{static_cast<std::uint32_t>(number), args[4].text, {}, args[3].number != 0,
-                 static_cast<std::uint32_t>(waiting)};
+  CueState state{
+      static_cast<std::uint32_t>(number), args[4].text, {}, args[3].number != 0, static_cast<std::uint32_t>(waiting)};
   if (ticks >= 0) state.ticks = static_cast<std::uint32_t>(ticks);
   return state;
 }

@@ -26,7 +26,8 @@ void LiveOutput::configure_osc(const OscConfig& config) {
 
 void LiveOutput::send_error(const Message& message, const CommandOrigin& origin, std::string_view error) {
   // messages of cues have no sender
-  if (origin.source == CommandSource::script) return warn_once(fmt::format("cue: {}: {}", printable(message.address), error));
+  if (origin.source == CommandSource::script)
+    return warn_once(fmt::format("cue: {}: {}", printable(message.address), error));
   push({Outgoing::Destination::error, origin, error_message(message.address, error)});
 }
 

@@ -111,8 +111,8 @@ bool PresetBuilder::add(std::string_view path, PresetLayout layout, const std::v
 }
 
 bool PresetBuilder::add_route(PresetRoute route) {
-  const bool valid = routes_.size() < sim::RouteList::kMaxRoutes && !name_error(route.name) && route.from.starts_with('/') &&
-                     route.to.starts_with('/');
+  const bool valid = routes_.size() < sim::RouteList::kMaxRoutes && !name_error(route.name) &&
+                     route.from.starts_with('/') && route.to.starts_with('/');
   if (!valid || std::ranges::find(routes_, route.name, &PresetRoute::name) != routes_.end()) return false;
   routes_.push_back(std::move(route));
   return true;

@@ -398,8 +398,7 @@ void compare_objects(const SceneSpec& before, const SceneSpec& now, SceneDiff& o
 
 SceneDiff compare(const SceneSpec& before, const SceneSpec& now) {
   SceneDiff out;
-  for (std::size_t i = 0; i < kSingleNodes; i++)
-    out.singles[i] = changed_mask(before.singles[i], now.singles[i]);
+  for (std::size_t i = 0; i < kSingleNodes; i++) out.singles[i] = changed_mask(before.singles[i], now.singles[i]);
   out.old_shape_indices = match(
       before.shapes, now.shapes, [](const auto& s) { return std::string_view(s->name); }, out.removed_shapes);
   out.old_body_indices = match(

@@ -21,11 +21,11 @@ namespace limber::link {
 
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;        // ns
-constexpr std::int64_t kRetryProgram = 5 * kSecond;    // ns
-constexpr std::int64_t kSilence = 5 * kSecond;         // ns without a line after which the program counts as hung
+constexpr std::int64_t kSecond = 1'000'000'000;             // ns
+constexpr std::int64_t kRetryProgram = 5 * kSecond;         // ns
+constexpr std::int64_t kSilence = 5 * kSecond;              // ns without a line after which the program counts as hung
 constexpr std::size_t kMaxReceived = std::size_t{1} << 16;  // bytes
-constexpr double kTempoTolerance = 1e-3;               // beats per minute
+constexpr double kTempoTolerance = 1e-3;                    // beats per minute
 
 std::int64_t link_now() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
@@ -96,9 +96,10 @@ void LinkSession::end_program(const char* reason, std::int64_t now) {
   process_.kill();
   retry_at_ = now + kRetryProgram;
   if (std::exchange(reported_, true)) return;
-  log_warning("Link: {} has ended or can't be started: {}. It is built with Limber if the package ableton-link-dev is "
-              "installed; trying again every 5 seconds",
-              printable(program_), reason);
+  log_warning(
+      "Link: {} has ended or can't be started: {}. It is built with Limber if the package ableton-link-dev is "
+      "installed; trying again every 5 seconds",
+      printable(program_), reason);
 }
 
 void LinkSession::read_lines(std::int64_t now) {

@@ -60,7 +60,7 @@ class LinkSession {
   // used by the thread only
   system::ChildProcess process_;
   LinkTranslator translator_;
-  std::string received_;      // the beginning of a line
+  std::string received_;       // the beginning of a line
   std::int64_t retry_at_ = 0;  // ns
   std::int64_t heard_at_ = 0;  // ns; when the last line came
   std::uint32_t peers_ = 0;

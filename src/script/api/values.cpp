@@ -86,7 +86,7 @@ std::int32_t class_table(void* c, std::int32_t which) {
       &sim::Motor::table(),       &sim::Shape::table(),      &sim::Visuals::table(), &sim::Camera::table(),
       &sim::Appearance::table(),  &sim::Gear::table(),       &sim::imu_table(),      &sim::range_finder_table(),
       &sim::zone_table(),         &sim::touch_table(),       &sim::Tendon::table(),  &sim::Fixture::table(),
-      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table(),  &sim::BeatClock::table()};
+      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table(),   &sim::BeatClock::table()};
   return static_cast<std::int32_t>(context_of(c).world->store().table_number(*tables[which]));
 }
 

@@ -165,7 +165,7 @@ const PropertyTable& annotated_class(std::string_view name) {
       &sim::Motor::table(),       &sim::Shape::table(),      &sim::Visuals::table(), &sim::Camera::table(),
       &sim::Appearance::table(),  &sim::Gear::table(),       &sim::imu_table(),      &sim::range_finder_table(),
       &sim::zone_table(),         &sim::touch_table(),       &sim::Tendon::table(),  &sim::Fixture::table(),
-      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table(),  &sim::BeatClock::table()};
+      &sim::MocapSource::table(), &sim::MocapJoint::table(), &sim::Route::table(),   &sim::BeatClock::table()};
   for (const PropertyTable* table : classes) {
     if (table->name() == name) return *table;
   }

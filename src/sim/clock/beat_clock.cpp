@@ -20,8 +20,8 @@ using namespace properties;
 constexpr double kTolerance = 1e-9;       // beats; a beat is reached this much early, in spite of rounding
 constexpr double kJump = 0.5;             // beats; larger differences are not corrected by degrees
 constexpr double kCorrectionTime = 0.25;  // s, time constant of corrections
-constexpr double kMaxCorrection = 0.5;    // of the beats of a tick, so that a correction never stops or doubles the tempo
-constexpr double kSyncTimeout = 2;        // s without a sync after which the clock counts as not synchronized
+constexpr double kMaxCorrection = 0.5;  // of the beats of a tick, so that a correction never stops or doubles the tempo
+constexpr double kSyncTimeout = 2;      // s without a sync after which the clock counts as not synchronized
 constexpr double kMaxBeat = 1e9;
 constexpr double kMaxTapInterval = 60 / BeatClock::kMinTempo;  // s
 

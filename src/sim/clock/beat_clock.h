@@ -54,8 +54,8 @@ class BeatClock {
 
   World& world_;
   NodeId id_;
-  // What persists from tick to tick. The beat is `anchor_beat` plus the beats since `anchor_time`: a product, since a sum
-  // over ticks would drift from it.
+  // What persists from tick to tick. The beat is `anchor_beat` plus the beats since `anchor_time`: a product, since a
+  // sum over ticks would drift from it.
   struct State {
     double beat = 0, previous = -1;  // now, and before the last tick
     double anchor_beat = 0, anchor_time = 0;

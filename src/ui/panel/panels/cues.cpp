@@ -95,8 +95,7 @@ class CuesPanel : public Panel {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float size = ImGui::GetFrameHeight();
     const auto fading = static_cast<float>(1 - (beat - std::floor(beat)));
-    const ImU32 color = packed_color(beat_in_bar == 0 ? ThemeColor::accent : ThemeColor::text,
-                                     playing ? fading : 0.1F);
+    const ImU32 color = packed_color(beat_in_bar == 0 ? ThemeColor::accent : ThemeColor::text, playing ? fading : 0.1F);
     ImGui::GetWindowDrawList()->AddCircleFilled({at.x + size / 2, at.y + size / 2}, size / 4, color);
     ImGui::Dummy({size, size});
     ImGui::SameLine();
