@@ -77,6 +77,8 @@ class Engine {
   /// Reads the cue file again. If it has an error, this is reported, and the cues stay. Returns false if it did
   /// nothing, because a take plays or the show has ended. [any but sim, during run()]
   bool reload_cues() { return cues_.reload(); }
+  /// Edits the cue file, see CueLoader. [any but sim]
+  Result<void> edit_cues(const Message& request) { return cues_.edit(request); }
 
   sim::World& world() { return show_.session->world; }
   Store& store() { return show_.session->store; }

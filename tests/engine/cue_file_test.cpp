@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/cues/cue_edit.h"
 #include "engine/cues/cue_list.h"
 
 namespace limber::engine::test {
@@ -110,6 +111,62 @@ TEST(CueFile, IsBounded) {
   for (std::size_t i = 0; i <= Cue::kMaxMessages; i++) messages += i == 0 ? "[\"/a\"]" : ",[\"/a\"]";
   EXPECT_TRUE(fault_of(with_cue("\"name\": \"b\", \"messages\": [" + messages + "]"))
                   .starts_with("cue 2 'b': messages: at most 256 in a cue"));
+}
+
+std::string edited(const std::string& text, const std::string& address, std::vector<Arg> args,
+                   std::size_t current = 0) {
+  const Result<std::string> result = edited_cues(text, {address, std::move(args)}, current);
+  return result ? *result : "error: " + result.error();
+}
+
+TEST(CueEdit, AddsMovesAndRemoves) {
+  std::string text = edited("", "/cue/add", {Arg::of("one")});
+  EXPECT_EQ(text, "{\n  \"limber cues\": 1,\n  \"cues\": [\n    { \"name\": \"one\" }\n  ]\n}\n");
+  text = edited(text, "/Cue/Add", {Arg::of("three"), Arg::of("look")}, 1);
+  text = edited(text, "/cue/add", {Arg::of("two")}, 1);
+  const auto names = [](const std::string& file) {
+    std::string list;
+    for (const Cue& cue : parse_cues(file).value()) list += cue.name + " ";
+    return list;
+  };
+  EXPECT_EQ(names(text), "one two three ");
+  EXPECT_EQ(parse_cues(text).value()[2].preset, "look");
+  EXPECT_EQ(names(edited(text, "/cue/move", {Arg::of("three"), Arg::of(1.0)})), "three one two ");
+  EXPECT_EQ(names(edited(text, "/cue/move", {Arg::of(1.0), Arg::of(3.0)})), "two three one ");
+  EXPECT_EQ(names(edited(text, "/cue/remove", {Arg::of("two")})), "one three ");
+  EXPECT_EQ(names(edited(text, "/cue/remove", {Arg::of(3.0)})), "one two ");
+}
+
+TEST(CueEdit, SetsFieldsAndKeepsTheOthers) {
+  const std::string before = R"({"limber cues": 1, "cues": [
+    {"name": "a", "note": "first", "messages": [["/x", 1, "two", null, true]], "time": 2.5},
+    {"name": "b"}]})";
+  const auto set = [&](const char* field, Arg value) {
+    return edited(before, "/cue/set", {Arg::of("a"), Arg::of(field), std::move(value)});
+  };
+  EXPECT_EQ(set("time", Arg::of(4.0)),
+            "{\n  \"limber cues\": 1,\n  \"cues\": [\n    { \"name\": \"a\", \"note\": \"first\", \"messages\": "
+            "[[\"/x\",1,\"two\",null,true]], \"time\": 4 },\n    { \"name\": \"b\" }\n  ]\n}\n");
+  EXPECT_EQ(parse_cues(set("follow", Arg::of(1.5))).value()[0].follow, 1.5);
+  EXPECT_EQ(parse_cues(set("at", Arg::of("bar"))).value()[0].at, CueStart::bar);
+  EXPECT_EQ(parse_cues(set("note", Arg::of(""))).value()[0].note, "");
+  EXPECT_EQ(parse_cues(set("name", Arg::of("c"))).value()[0].name, "c");
+  EXPECT_EQ(set("time", Arg::of("long")), "error: cue 1 'a': time: must be a number of seconds from 0 to 86400");
+  EXPECT_EQ(set("name", Arg::of("b")), "error: cue 2 'b': name: another cue has the same name");
+  EXPECT_EQ(set("tme", Arg::of(1.0)), "error: cue 1 'a': there is no field 'tme'; did you mean 'time'?");
+  EXPECT_EQ(set("messages", Arg::of("/x")), "error: messages are edited in the file");
+}
+
+TEST(CueEdit, RejectsWrongRequestsAndFiles) {
+  const std::string file = "{\"limber cues\": 1, \"cues\": [{\"name\": \"one\"}]}";
+  EXPECT_EQ(edited(file, "/cue/remove", {Arg::of("on")}), "error: there is no cue 'on'; did you mean 'one'?");
+  EXPECT_EQ(edited(file, "/cue/remove", {Arg::of(2.0)}), "error: the number of a cue must be 1 to 1, got 2");
+  EXPECT_EQ(edited(file, "/cue/remove", {}), "error: takes the name or the number of a cue");
+  EXPECT_EQ(edited(file, "/cue/add", {Arg::of(3.0)}),
+            "error: takes a name, and the name of a preset if it has one");
+  EXPECT_EQ(edited(file, "/cue/add", {Arg::of("one")}), "error: cue 1 'one': name: another cue has the same name");
+  EXPECT_EQ(edited(file, "/cue/move", {Arg::of("one")}), "error: takes a cue, and the number that it will have");
+  EXPECT_EQ(edited("{", "/cue/add", {Arg::of("two")}).substr(0, 22), "error: line 1: not val");
 }
 
 }  // namespace

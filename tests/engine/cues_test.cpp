@@ -446,5 +446,43 @@ TEST_F(CueShow, AShowStartsWithoutOrWithABadFile) {
   EXPECT_EQ(current(show), 1);
 }
 
+TEST_F(CueShow, EditsChangeTheFileAndTheList) {
+  Show show(options());
+  send(show, "/cue/go");
+  const auto edit = [&](const char* address, std::vector<Arg> args) {
+    Result<void> done;
+    run_while_ticking(show, [&] { done = show.engine.edit_cues({address, std::move(args)}); });
+    return done ? "" : done.error();
+  };
+  EXPECT_EQ(edit("/cue/add", {Arg::of("lift"), Arg::of("filed")}), "");
+  show.sent_texts();
+  send(show, "/list/cues");
+  EXPECT_TRUE(sent(show, "/list/cues calm lift storm end"));
+  EXPECT_NE(folder.read("scripts/scene.cues.json").find("{ \"name\": \"lift\", \"preset\": \"filed\" }"),
+            std::string::npos);
+  const std::string before = folder.read("scripts/scene.cues.json");
+  EXPECT_NE(edit("/cue/set", {Arg::of("lift"), Arg::of("time"), Arg::of(-1.0)}).find("time: must be a number"),
+            std::string::npos);
+  EXPECT_EQ(folder.read("scripts/scene.cues.json"), before);
+  write("{");
+  EXPECT_NE(edit("/cue/remove", {Arg::of("lift")}).find("not valid JSON"), std::string::npos);
+  EXPECT_EQ(folder.read("scripts/scene.cues.json"), "{") << "a file with an error is not replaced";
+  send(show, "/list/cues");
+  EXPECT_TRUE(sent(show, "/list/cues calm lift storm end"));
+}
+
+TEST_F(CueShow, EditsDoNotWriteThroughALink) {
+  folder.write("other/real.cues.json", kCues);
+  folder.remove("scripts/scene.cues.json");
+  std::filesystem::create_symlink(folder.path("other/real.cues.json"), folder.path("scripts/scene.cues.json"));
+  Show show(options());
+  run_while_ticking(show, [&] {
+    const Result<void> done = show.engine.edit_cues({"/cue/remove", {Arg::of(1.0)}});
+    ASSERT_FALSE(done.ok());
+    EXPECT_NE(done.error().find("is a link to another folder"), std::string::npos) << done.error();
+  });
+  EXPECT_EQ(folder.read("other/real.cues.json"), kCues);
+}
+
 }  // namespace
 }  // namespace limber::engine::test

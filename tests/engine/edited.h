@@ -32,6 +32,10 @@ class ShowFolder {
     std::filesystem::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << text;
   }
+  std::string read(const std::string& name) const {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
   void remove(const std::string& name) const { std::filesystem::remove(folder_ / name); }
 
  private:

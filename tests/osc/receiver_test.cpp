@@ -176,6 +176,24 @@ TEST(Receiver, DeliversInOrderOfTimeTags) {
   log_to_stderr(true);
 }
 
+// A nested bundle waits for its own time; one whose time is before that of its container is due with it.
+TEST(Receiver, DeliversNestedBundlesAtTheirTimes) {
+  ReceiverFixture fixture;
+  constexpr std::uint64_t kSecond = std::uint64_t{1} << 32;
+  const std::uint64_t now = fixture.manual_clock.ntp;
+  const std::string inner = bundle(now + 2 * kSecond, {numbered(4), numbered(5)});
+  const std::string outer = bundle(now + kSecond, {numbered(3), bundle(now, {numbered(3.5)}), inner});
+  fixture.process(bundle(1, {numbered(1), outer, numbered(2)}));
+  fixture.receiver.process_pending();
+  EXPECT_EQ(fixture.numbers(), (std::vector<double>{1, 2}));
+  fixture.manual_clock.advance(1.5);
+  fixture.receiver.process_pending();
+  EXPECT_EQ(fixture.numbers(), (std::vector<double>{1, 2, 3, 3.5}));
+  fixture.manual_clock.advance(1);
+  fixture.receiver.process_pending();
+  EXPECT_EQ(fixture.numbers(), (std::vector<double>{1, 2, 3, 3.5, 4, 5}));
+}
+
 // The command queue is limited; further commands are dropped and their messages counted.
 TEST(Receiver, CountsMessagesDroppedByFullInbox) {
   log_to_stderr(false);

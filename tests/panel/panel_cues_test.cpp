@@ -66,6 +66,31 @@ TEST(PanelCues, KeysStartAndPauseCues) {
   EXPECT_EQ(panel.read("/cue/current"), 1);
 }
 
+// The panel sends edits, which the program's watch thread executes.
+TEST(PanelCues, CuesAreEditedInTheirMenu) {
+  CuesFixture cues(kPanelCues);
+  PanelFixture& panel = *cues.fixture;
+  std::vector<std::string> requests;
+  panel.show.link.on_scene_request = [&](const Message& message, const CommandOrigin&) {
+    std::string text = message.address;
+    for (const Arg& arg : message.args) text += " " + (arg.is_text() ? arg.text : number_text(arg.number));
+    requests.push_back(text);
+  };
+  panel.click("cues.cue:end", 1);
+  panel.click("menu:cue_up");
+  panel.click("cues.cue:end", 1);
+  panel.click("menu:cue_delete");
+  panel.click("cues.cue:calm", 1);
+  panel.click("cues.field:at");
+  panel.click("cues.at:bar");
+  panel.click("cues.add");
+  panel.type("lift");
+  panel.click("cues.add_now");
+  EXPECT_EQ(requests, (std::vector<std::string>{"/cue/move 3 2", "/cue/remove 3", "/cue/set 1 at bar",
+                                                "/cue/add lift lift"}));
+  EXPECT_EQ(panel.read("/cue/current"), 0) << "nothing was started";
+}
+
 TEST(PanelCues, TheClockIsPlayedFromThePanel) {
   CuesFixture cues(kPanelCues);
   PanelFixture& panel = *cues.fixture;

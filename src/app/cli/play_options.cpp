@@ -83,6 +83,10 @@ void add_network(CLI::App& play, NetworkOptions& o) {
                   "exit=blackout|hold, panic=hold|blackout.")
       ->type_name("artnet|sacn[:ADDR[:PORT]][,...]|off")
       ->allow_extra_args(false);
+  play.add_option("--zeroconf", o.zeroconf,
+                  "Announce the ports of OSC and OSCQuery by zeroconf under this name, so that tablets find them.")
+      ->type_name("NAME")
+      ->check(CLI::Validator([](std::string& text) { return name_error(text).value_or(""); }, "", "name"));
   play.add_flag("--link", o.link,
                 "Join an Ableton Link session: sim.clock follows its beat, and other programs follow /clock/tempo.");
   play.add_flag("--osc-optional", o.osc_optional, "Continue if a port is not available.");

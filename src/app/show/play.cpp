@@ -10,6 +10,7 @@
 
 #include "app/exit_code.h"
 #include "app/paths.h"
+#include "app/service/announcer.h"
 #include "app/show/engine_thread.h"
 #include "app/show/query_host.h"
 #include "app/show/run_file.h"
@@ -248,6 +249,7 @@ class Playing {
         lights_(link_, outputs.lights),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
         query_(link_, query_host(network_, osc_.allow, options.network.query_names)) {
+    if (!options.network.zeroconf.empty()) announcer_.emplace(options.network.zeroconf);
     if (!options.run.out.empty()) run_file_.emplace(options.run.out, options.scene, options.fast || options.lockstep);
     if ((!options.fast || options.watch) && options.take.replay.empty())
       scene_loader_.emplace(link_, engine_, scene_file_, &models_);
@@ -313,11 +315,21 @@ class Playing {
     }
     if (options_.network.link && !options_.fast && options_.take.replay.empty()) link_session_.start();
     if (!options_.fast) open_console(console_);
+    update_announcer();
     loop.set_retry([this, at] {
+      update_announcer();
       retry_query(at, query_);
       if (!options_.fast) open_console(console_, true);
     });
     return std::nullopt;
+  }
+  void update_announcer() {
+    if (!announcer_) return;
+    std::vector<AnnouncedPort> ports;
+    for (const osc::Endpoint& end : network_.bound()) ports.push_back({"_osc._udp", end.port});
+    for (const osc::Endpoint& end : network_.bound_tcp()) ports.push_back({"_osc._tcp", end.port});
+    if (query_.port() != 0) ports.push_back({"_oscjson._tcp", query_.port()});
+    announcer_->update(ports);
   }
   int fail_start(int code, const std::string& reason) {
     engine_.end_recovery();
@@ -331,6 +343,7 @@ class Playing {
       engine_.end_recovery();
       guard.files_written();
       scene_loader_.reset();
+      announcer_.reset();
       lights_.stop();
       link_session_.stop();
       query_.stop();
@@ -352,6 +365,7 @@ class Playing {
   osc::Network network_;
   lighting::LightingOutput lights_;
   link::LinkSession link_session_{link_, link_program()};
+  std::optional<Announcer> announcer_;
   console::ConsoleServer console_;
   std::optional<SceneLoader> scene_loader_;
   std::optional<RunFile> run_file_;

@@ -30,6 +30,7 @@ struct NetworkOptions {
   std::vector<std::string> query_names;
   bool lights = false;                  ///< Lighting output is armed from the start.
   std::vector<std::string> lights_out;  ///< Targets of lighting output.
+  std::string zeroconf;                 ///< Name to announce; empty: not given.
   bool link = false;                    ///< Take part in an Ableton Link session.
 };
 

@@ -194,6 +194,10 @@ bool SceneLoader::handle(const SceneRequest& request) {
   const std::vector<Arg>& args = request.message.args;
   if (request.message.address == kAddModel) return handle_model(request);
   if (request.message.address.starts_with("/take/")) return play_take(request);
+  if (normalized_name(request.message.address).starts_with("/cue/")) {
+    if (const Result<void> edited = engine_.edit_cues(request.message); !edited) reject(request, edited.error());
+    return true;
+  }
   const std::vector<std::string> names = scenes();
   if (args.empty()) {
     Message reply{"/list/scenes", {}};

@@ -116,6 +116,8 @@ MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
   entries_["/list/health"].handler = &MessageDispatcher::answer_health;
   entries_["/list/cues"].handler = &MessageDispatcher::answer_cues;
   entries_["/cue/jump"].handler = &MessageDispatcher::request_cue;
+  for (const char* edit : {"/cue/add", "/cue/remove", "/cue/move", "/cue/set"})
+    entries_[edit].handler = &MessageDispatcher::request_cue_edit;
   entries_["/list/scenes"].handler = &MessageDispatcher::request_scene;
   entries_["/transport/scene"].handler = &MessageDispatcher::request_scene;
   for (const auto& [address, entry] : entries_) addresses_.push_back(address);
@@ -417,6 +419,13 @@ Outcome MessageDispatcher::request_scene(const Message& message) {
   outcome.kind = Outcome::Kind::scene_request;
   outcome.error =
       "scenes can be changed in a live show only (limber play, without --fast)";  // used without on_scene_request
+  return outcome;
+}
+
+Outcome MessageDispatcher::request_cue_edit(const Message&) {
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::scene_request;
+  outcome.error = "cues can be edited in a live show only (limber play, without --fast)";
   return outcome;
 }
 

@@ -106,6 +106,7 @@ class MessageDispatcher {
   Outcome answer_health(const Message& message);
   Outcome answer_cues(const Message& message);
   Outcome request_cue(const Message& message);
+  Outcome request_cue_edit(const Message& message);
   Outcome answer_get(const Message& message);
   Outcome reject_unsupported(const Message& message);
   Outcome execute_preset(const Message& message);

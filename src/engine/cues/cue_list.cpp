@@ -206,6 +206,8 @@ Result<void> check_header(const CueJson& json) {
 
 }  // namespace
 
+std::span<const std::string_view> cue_starts() { return kCueStarts; }
+
 Result<CueList> parse_cues(std::string_view text) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return CueList{};
   const Result<CueJson> json = parse_json(text);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,8 @@ namespace limber::engine {
 
 /// When a cue that is started runs: at once, or at the next beat or bar of the clock.
 enum class CueStart : std::uint8_t { now, beat, bar };
+/// Their names in files, in order.
+std::span<const std::string_view> cue_starts();
 
 /// A step of a show: recalls a preset, then sends messages.
 struct Cue {

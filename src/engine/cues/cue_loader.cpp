@@ -1,7 +1,9 @@
 // CueLoader: files, errors, and the exchange of the list between two ticks.
 #include "engine/cues/cue_loader.h"
 
+#include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -12,6 +14,7 @@
 #include "base/plural.h"
 #include "base/system/file.h"
 #include "base/text.h"
+#include "engine/cues/cue_edit.h"
 
 namespace limber::engine {
 
@@ -63,6 +66,37 @@ bool CueLoader::reload() {
   const Result<void> done = scenes_.run_between_ticks([&] { apply(*list, false); });
   if (done) log_info("{}: {} loaded", printable(path), counted((*list)->size(), "cue"));
   return done.ok();
+}
+
+Result<void> CueLoader::edit(const Message& request) {
+  namespace fs = std::filesystem;
+  std::string path = file().path;
+  if (path.empty()) return Error{"this show has no scene file, so it has no cue file"};
+  std::error_code error;
+  if (fs::is_symlink(path, error)) {
+    const fs::path real = fs::canonical(path, error);
+    if (error || real.parent_path() != fs::canonical(fs::path(path).parent_path(), error))
+      return Error{fmt::format("{} is a link to another folder; put a file in its place", printable(path))};
+    path = real.string();
+  }
+  const std::optional<system::FileStatus> status = system::file_status(path);
+  const Result<std::string> text = status ? system::read_file(path, kMaxBytes) : Result<std::string>(std::string());
+  const auto fault = [&](const std::string& why) { return Error{fmt::format("{}: {}", printable(path), why)}; };
+  if (!text) return fault(text.error());
+  std::size_t current = 0;
+  const Result<void> idle = scenes_.run_between_ticks([&] { current = show_.cues.position(); });
+  if (!idle) return idle;
+  const Result<std::string> edited = edited_cues(*text, request, current);
+  if (!edited) return fault(edited.error());
+  const std::string temporary = path + ".tmp";
+  Result<void> written = system::replace_file(temporary, *edited, status ? status->permissions : 0644u);
+  if (written && std::rename(temporary.c_str(), path.c_str()) != 0) written = Error{system::error_reason()};
+  if (!written) {
+    system::remove_file(temporary);
+    return fault(written.error());
+  }
+  reload();
+  return {};
 }
 
 void CueLoader::change_scene(const std::string& scene) {

@@ -21,6 +21,9 @@ class CueLoader {
   Result<void> start();
   /// Reads the file again. If it has an error, reports it, and the cues stay. False while a take plays. [any but sim]
   bool reload();
+  /// Edits the file (see cue_edit.h) and reads it again. Errors: it can't be read or written, is a link out of its
+  /// folder, or the edit is wrong. [any but sim]
+  Result<void> edit(const Message& request);
   /// Reads the cues of another scene, which plays now, unless an option names the file. [any but sim]
   void change_scene(const std::string& scene);
   /// The file, for a watch. [any]

@@ -9,6 +9,9 @@ const PropertyTable& CueNode::table() {
       "cue", "/cue", "",
       {
           text_from<&CueNode::read_names>(text("names", "Names of the cues, one per line, in order.")),
+          text_from<&CueNode::read_fields>(
+              text("fields",
+                   "The cues, one per line, with tabs between name, preset, time, easing, at, when, follow and note.")),
           text_from<&CueNode::read_name>(text("name", "Name of the cue that has run last; empty: none.")),
           transient(readout(integer("current", 0, 0, static_cast<double>(kMaxCues),
                                     "Number of the cue that has run last, from 1; 0: none."))),

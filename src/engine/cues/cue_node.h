@@ -23,6 +23,7 @@ class CueNode {
 
  private:
   std::string_view read_names() const { return cues_.names(); }
+  std::string_view read_fields() const { return cues_.fields(); }
   std::string_view read_name() const { return cues_.state().name; }
   Result<void> act_go(std::span<const double> args);
   Result<void> act_back(std::span<const double> args);

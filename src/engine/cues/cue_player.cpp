@@ -18,13 +18,29 @@ constexpr double kCueEvent = 3;  // after the kinds of TakeEvent, which have ano
 constexpr std::size_t kCueEventArgs = 6;
 constexpr double kMaxCueTicks = 2e9;
 
+// Without tabs and line ends, which separate the fields.
+std::string field_text(std::string text) {
+  std::ranges::replace_if(text, [](char c) { return c == '\t' || c == '\n'; }, ' ');
+  return text;
+}
+
+std::string fields_of(const Cue& cue) {
+  return fmt::format("{}\t{}\t{}\t{}\t{}\t{}\t{}\t{}", cue.name, field_text(cue.preset), number_text(cue.time),
+                     easings()[static_cast<std::size_t>(cue.easing)], cue_starts()[static_cast<std::size_t>(cue.at)],
+                     cue.when, cue.follow ? number_text(*cue.follow) : "", field_text(cue.note));
+}
+
 }  // namespace
 
 void CuePlayer::set_list(std::shared_ptr<const CueList> list, std::string file) {
   list_ = std::move(list);
   file_ = std::move(file);
   names_.clear();
-  for (const Cue& cue : *list_) names_ += (names_.empty() ? "" : "\n") + cue.name;
+  fields_.clear();
+  for (const Cue& cue : *list_) {
+    names_ += (names_.empty() ? "" : "\n") + cue.name;
+    fields_ += (fields_.empty() ? "" : "\n") + fields_of(cue);
+  }
 }
 
 std::uint32_t CuePlayer::position() const {

@@ -38,6 +38,8 @@ class CuePlayer {
   const std::shared_ptr<const CueList>& list() const { return list_; }
   /// Names, one per line.
   std::string_view names() const { return names_; }
+  /// One line per cue, with tabs between name, preset, time, easing, at, when, follow and note.
+  std::string_view fields() const { return fields_; }
   /// Replaces the cues. `file`: their file, for messages.
   void set_list(std::shared_ptr<const CueList> list, std::string file);
 
@@ -59,7 +61,7 @@ class CuePlayer {
   Result<std::size_t> find(const Arg& cue) const;
 
   std::shared_ptr<const CueList> list_ = std::make_shared<const CueList>();
-  std::string names_;
+  std::string names_, fields_;
   std::string file_;
   CueState state_;
 };

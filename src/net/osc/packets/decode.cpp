@@ -2,6 +2,7 @@
 #include "net/osc/packets/decode.h"
 
 #include <bit>
+#include <array>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -63,7 +64,14 @@ class DecodingVisitor {
 
   void bundle(int depth, std::uint64_t time_tag) {
     // time tag 0 is undefined; it is treated as now, like 1
-    if (depth == 1) out_.time_tag = time_tag == 0 ? kImmediately : time_tag;
+    const std::uint64_t tag = time_tag == 0 ? kImmediately : time_tag;
+    if (depth == 1) out_.time_tag = tag;
+    // a nested bundle is not due before the one that contains it
+    const auto level = static_cast<std::size_t>(depth);
+    time_tags_[level] = depth == 1 ? tag : std::max(tag, time_tags_[level - 1]);
+    depth_ = level;
+  }
+  void end_bundle(int depth) { depth_ = static_cast<std::size_t>(depth - 1);
   }
   void message(const char* address, const char* tags) {
     message_.address = address;
@@ -84,7 +92,15 @@ class DecodingVisitor {
     }
   }
   void end_message() {
-    if (!rejected_) out_.messages.push_back(std::move(message_));
+    if (rejected_) return;
+    out_.messages.push_back(std::move(message_));
+    const std::uint64_t tag = time_tags_[depth_];
+    if (tag == out_.time_tag) return;
+    const std::size_t index = out_.messages.size() - 1;
+    const bool continues = !out_.later.empty() && out_.later.back().time_tag == tag &&
+                           out_.later.back().first + out_.later.back().count == index;
+    if (!continues) out_.later.push_back({index, 0, tag});
+    out_.later.back().count++;
   }
 
  private:
@@ -94,6 +110,8 @@ class DecodingVisitor {
   }
 
   Decoded& out_;
+  std::array<std::uint64_t, OscLimits::kDepth + 1> time_tags_{kImmediately};  // by depth
+  std::size_t depth_ = 0;
   Message message_;  // of which the arguments are read
   int array_depth_ = 0;
   bool rejected_ = false;

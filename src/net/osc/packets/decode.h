@@ -18,11 +18,18 @@ struct RejectedMessage {
   std::string reason;  ///< Reason of the rejection.
 };
 
+/// Consecutive messages of a nested bundle that is due later than the outermost one.
+struct LaterMessages {
+  std::size_t first = 0, count = 0;  ///< In Decoded::messages.
+  std::uint64_t time_tag = 1;
+};
+
 /// The contents of a datagram. Bundles, including nested ones, are flattened in order.
 struct Decoded {
   std::vector<Message> messages;
   std::vector<RejectedMessage> rejected;
   std::uint64_t time_tag = 1;  ///< Of the outermost bundle; NTP (seconds since 1900 in the upper half); 1: now.
+  std::vector<LaterMessages> later = {};  ///< In order.
 };
 
 /// Decodes a packet; returns the error of packet_fault() if it is malformed. i h f d become numbers, T F I booleans,

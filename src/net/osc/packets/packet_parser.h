@@ -14,6 +14,7 @@ namespace limber::osc {
 
 /// Visits the elements of a packet in order. A visitor has the functions
 ///   void bundle(int depth, std::uint64_t time_tag)         a bundle begins; the outermost has depth 1
+///   void end_bundle(int depth)                             optional
 ///   void message(const char* address, const char* tags)    both are NUL-terminated
 ///   void argument(char tag, const char* data)              its bounds are checked; also called for array brackets
 ///   void end_message()
@@ -70,6 +71,7 @@ const char* PacketParser<Visitor>::bundle(const char* data, std::size_t size, in
     if (const char* fault = element(data + at, length, depth)) return fault;
     at += length;
   }
+  if constexpr (requires { visitor_.end_bundle(depth); }) visitor_.end_bundle(depth);
   return nullptr;
 }
 
