@@ -30,6 +30,7 @@ constexpr std::array kModules{
     // Modules outside the simulation thread see commands, snapshots and the catalog, but no simulation objects.
     Module{"net/osc", "properties model engine"},
     Module{"net/lighting", "properties model engine"},
+    Module{"net/midi", "properties model engine"},
     Module{"net/console", "properties model engine"},
     Module{"net/oscquery", "properties model engine"},
     Module{"ui/render", "properties model engine"},
@@ -40,8 +41,8 @@ constexpr std::array kModules{
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
     Module{"app",
-           "properties model sim script engine net/osc net/lighting net/console net/oscquery ui/render ui/panel export "
-           "experiments"},
+           "properties model sim script engine net/osc net/lighting net/midi net/console net/oscquery ui/render "
+           "ui/panel export experiments"},
 };
 
 /// Folders that only files of their own module include.
@@ -66,6 +67,7 @@ constexpr std::array kNamespaces{
     Namespace{"engine/", "engine"},
     Namespace{"net/osc/", "osc"},
     Namespace{"net/lighting/", "lighting"},
+    Namespace{"net/midi/", "midi"},
     Namespace{"net/console/", "console"},
     Namespace{"net/oscquery/", "oscquery"},
     Namespace{"ui/render/", "render"},
@@ -94,6 +96,7 @@ constexpr std::array kLibraries{
     Library{"lua", "script"},
     Library{"lauxlib.h", "script"},
     Library{"luajit-2.1/", "script"},
+    Library{"RtMidi.h", "net/midi"},
     Library{"boost/", "net/oscquery"},
     Library{"epoxy/", "ui/render"},
     Library{"GL/", "ui/render"},

@@ -52,6 +52,10 @@ inline constexpr SpecialAddress kSpecialAddresses[] = {
     {"/route/connect", "name from to", "Gives a route other addresses; its settings stay."},
     {"/route/remove", "name", "Removes a route."},
     {"/cue/jump", "cue", "Starts a cue, given by name or number."},
+    {"/midi/learn", "address [component] [mode]",
+     "The next MIDI control that moves sets this address from now on; component: of a vector, from 1; mode: absolute, "
+     "relative, relative_offset, relative_sign, toggle, momentary or trigger. Without arguments: stops learning."},
+    {"/midi/forget", "address [component]", "Removes the MIDI controls of an address."},
     {"/take/record", "[name]", "Resets the scene and records all input from its start, so that it can be replayed."},
     {"/take/stop", "", "Ends the recording of a take and completes its file, or ends the take that plays."},
     {"/take/play", "[name]",

@@ -41,6 +41,8 @@ class InputSource {
   /// Accepts a request of a controller to start or pause cues. The default ignores it, because the messages of cues
   /// are recorded inputs themselves.
   virtual Outcome request_cue(const CueRequest&) { return {}; }
+  /// Passes on a request to learn or forget a MIDI control. The default ignores it: a replay changes no map.
+  virtual Outcome request_midi(const Message&, const CommandOrigin&) { return {}; }
 
   /// Input of a run of the scene.
   struct SceneFiles {

@@ -94,6 +94,7 @@ class LiveInput final : public InputSource {
   Outcome rewind(const Transport::RewindRequest& request, const CommandOrigin& origin) override;
   Outcome request_take(const Message& message) override { return recording_.request(message); }
   Outcome request_cue(const CueRequest& request) override { return cues_.request(request); }
+  Outcome request_midi(const Message& message, const CommandOrigin& origin) override;
   bool must_rerun() override;
   bool is_paced() const override;
   void end_pass() override;
