@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fuzz/target.h"
-#include "net/midi/clock_in.h"
+#include "net/midi/clock/clock_in.h"
 #include "net/midi/controls.h"
 #include "net/midi/learner.h"
 #include "net/midi/map.h"
@@ -49,7 +49,8 @@ void read_controls(const std::vector<MidiMessage>& messages) {
       learner.accept("port", event, time);
     });
     time += 1'000'000;
-    if (const auto entry = learner.finish(time)) must(parse_midi_map(midi_map_text({*entry})).ok());
+    if (const auto entry = learner.finish(time))
+      must(limber::midi::parse_midi_map(limber::midi::midi_map_text({*entry})).ok());
   }
 }
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "net/midi/clock_in.h"
-#include "net/midi/clock_out.h"
+#include "net/midi/clock/clock_in.h"
+#include "net/midi/clock/clock_out.h"
 
 namespace limber::midi::test {
 namespace {

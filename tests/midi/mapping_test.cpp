@@ -77,8 +77,8 @@ TEST(MidiMapping, PickupBeginsAgainAfterAnotherSource) {
 TEST(MidiMapping, AFastMovementHoldsTheValueBeforeItIsExecuted) {
   MidiRig rig(map_of(kFader));
   rig.move({0xb0, 7, 64});
-  for (const std::uint8_t position : {80, 100, 120}) {
-    rig.devices.send(kNano, {0xb0, 7, position});
+  for (const int position : {80, 100, 120}) {
+    rig.devices.send(kNano, {0xb0, 7, static_cast<std::uint8_t>(position)});
     rig.pass(2);
   }
   rig.settle();

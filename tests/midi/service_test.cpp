@@ -43,6 +43,9 @@ TEST(MidiDevices, AreOpenedOnDemandOnly) {
   rig.send("/midi/learn", "/scene/wind");
   rig.pass(20);
   EXPECT_TRUE(rig.devices.receivers.contains(kNano));
+  rig.send("/midi/learn");
+  rig.pass(20);
+  EXPECT_FALSE(rig.devices.receivers.contains(kNano));
 }
 
 TEST(MidiDevices, AreOpenedForAMap) {

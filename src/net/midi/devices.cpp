@@ -43,8 +43,6 @@ Device* Devices::find_or_add(const std::string& name) {
   if (devices_.size() >= kMaxDevices) return nullptr;
   Device& device = devices_.emplace_back();
   device.name = name;
-  device.wants_input = is_control(device) || is_clock_source(device);
-  device.wants_output = is_control(device) || is_clock_target(device);
   return &device;
 }
 
@@ -61,27 +59,39 @@ bool Devices::scan(std::int64_t now) {
   }
   bool changed = false;
   for (std::size_t i = 0; i < devices_.size(); i++) {
-    Device& device = devices_[i];
-    const bool has_input = contains_name(names->inputs, device.name);
-    const bool has_output = contains_name(names->outputs, device.name);
-    device.present = has_input || has_output;
-    const bool was_open = device.input != nullptr || device.output != nullptr;
-    if (!has_input) device.input.reset();
-    if (!has_output) device.output.reset();
-    device.wants_input = has_input && (is_control(device) || is_clock_source(device));
-    device.wants_output = has_output && (is_control(device) || is_clock_target(device));
-    if (was_open && !device.present) {
-      log_warning("MIDI: {} was unplugged. It is opened again when it returns", device.name);
-      changed = true;
-    }
-    changed |= update(device, i);
+    changed |= follow(devices_[i], *names);
+    changed |= open(devices_[i], i);
   }
   report_missing();
   return changed;
 }
 
+// Closes the ports of a device that no longer exist. Returns true if it was unplugged.
+bool Devices::follow(Device& device, const PortNames& names) const {
+  const bool has_input = contains_name(names.inputs, device.name);
+  const bool has_output = contains_name(names.outputs, device.name);
+  const bool was_open = device.input != nullptr || device.output != nullptr;
+  device.present = has_input || has_output;
+  if (!has_input) device.input.reset();
+  if (!has_output) device.output.reset();
+  device.wants_input = has_input && (is_control(device) || is_clock_source(device));
+  device.wants_output = has_output && (is_control(device) || is_clock_target(device));
+  if (!was_open || device.present) return false;
+  log_warning("MIDI: {} was unplugged. It is opened again when it returns", device.name);
+  return true;
+}
+
+void Devices::close() {
+  for (Device& device : devices_) {
+    device.input.reset();
+    device.output.reset();
+    device.was_open = false;
+  }
+  next_scan_ = 0;
+}
+
 // Opens the ports of a device that are wanted. Returns true if one was opened.
-bool Devices::update(Device& device, std::size_t index) {
+bool Devices::open(Device& device, std::size_t index) {
   std::string fault;
   bool opened = false;
   if (device.wants_input && device.input == nullptr) {

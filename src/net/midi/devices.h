@@ -55,6 +55,8 @@ class Devices {
 
   /// Looks for devices, if it is time, and opens and closes ports. Returns true if any was opened or closed.
   bool scan(std::int64_t now);
+  /// Closes all ports; the next scan() opens them again.
+  void close();
   std::int64_t next_scan() const { return next_scan_; }
   /// Makes the next scan() look for devices.
   void scan_soon() { next_scan_ = 0; }
@@ -73,7 +75,8 @@ class Devices {
 
  private:
   Device* find_or_add(const std::string& name);
-  bool update(Device& device, std::size_t index);
+  bool follow(Device& device, const PortNames& names) const;
+  bool open(Device& device, std::size_t index);
   void report_missing();
   void receive(std::size_t device, std::span<const std::uint8_t> bytes);
 

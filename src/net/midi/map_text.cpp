@@ -138,6 +138,10 @@ class EntryParser {
       if (size == 0 || !std::isfinite(size)) return Error{"step: must be a number other than 0"};
       entry_.step = size;
     }
+    return parse_takeover();
+  }
+
+  Result<void> parse_takeover() {
     std::string takeover;
     if (Result<void> text = parse_text("takeover", takeover); !text) return text;
     constexpr std::array<std::string_view, 2> kTakeovers = {"pickup", "jump"};

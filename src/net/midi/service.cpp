@@ -88,10 +88,7 @@ void MidiService::run() {
     if (early > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(early));
   }
   clocks_.stop(devices_);
-  for (Device& device : devices_.list()) {
-    device.input.reset();
-    device.output.reset();
-  }
+  devices_.close();
 }
 
 std::int64_t MidiService::update() {
@@ -106,6 +103,8 @@ std::int64_t MidiService::update() {
     finish_learning(now);
     send_feedback(now);
     next_pulse_ = options_.clock_to.empty() ? std::nullopt : clocks_.send_due(devices_, now);
+  } else {
+    devices_.close();
   }
   publish(now);
   return next_time(now);

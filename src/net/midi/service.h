@@ -15,7 +15,7 @@
 
 #include "base/system/wake.h"
 #include "engine/output/engine_link.h"
-#include "net/midi/clocks.h"
+#include "net/midi/clock/clocks.h"
 #include "net/midi/devices.h"
 #include "net/midi/mapping.h"
 #include "net/midi/options.h"

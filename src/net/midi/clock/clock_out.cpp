@@ -1,10 +1,10 @@
 // ClockOut: the beat between two readings, and song positions.
-#include "net/midi/clock_out.h"
+#include "net/midi/clock/clock_out.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "net/midi/clock_in.h"
+#include "net/midi/clock/clock_in.h"
 
 namespace limber::midi {
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/output/value_snapshot.h"
-#include "net/midi/clock_in.h"
-#include "net/midi/clock_out.h"
+#include "net/midi/clock/clock_in.h"
+#include "net/midi/clock/clock_out.h"
 #include "net/midi/devices.h"
 
 namespace limber::midi {

@@ -1,5 +1,5 @@
 // Clocks: the readouts of /clock.
-#include "net/midi/clocks.h"
+#include "net/midi/clock/clocks.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // PulseTracker: least squares, with pulses that are far off left out; ClockIn: its messages.
-#include "net/midi/clock_in.h"
+#include "net/midi/clock/clock_in.h"
 
 #include <algorithm>
 #include <array>
