@@ -13,7 +13,8 @@ std::string sender_text(const CommandOrigin& origin) {
                        origin.ip & 255u, origin.port);
   }
   // in the order of CommandSource
-  constexpr std::array<std::string_view, 6> kSourceNames{"osc", "query", "command_line", "console", "panel", "script"};
+  constexpr std::array<std::string_view, 7> kSourceNames{"osc",   "query",  "command_line", "console",
+                                                         "panel", "script", "midi"};
   return std::string(kSourceNames[static_cast<std::size_t>(origin.source)]);
 }
 

@@ -31,7 +31,7 @@ struct Message {
 };
 
 /// The kind of controller that sent a message.
-enum class CommandSource : std::uint8_t { osc, oscquery, command_line, console, panel, script };
+enum class CommandSource : std::uint8_t { osc, oscquery, command_line, console, panel, script, midi };
 
 /// The sender of a message, and where a reply goes.
 struct CommandOrigin {

@@ -11,6 +11,7 @@
 #include "engine/edits/edit_node.h"
 #include "engine/output/counter_node.h"
 #include "engine/output/engine_link.h"
+#include "engine/output/midi_node.h"
 #include "engine/output/publisher.h"
 #include "engine/presets/node.h"
 #include "engine/takes/take_node.h"
@@ -26,6 +27,7 @@ struct Session {
       : world(store, setup),
         transport(world, link.health, lockstep),
         counters(store, link.counters),
+        midi_node(store, link.midi),
         preset_node(world, presets),
         cue_node(world, cues),
         edit_node(world, undo_stack),
@@ -78,6 +80,7 @@ struct Session {
   sim::World world;
   Transport transport;
   CounterNode counters;
+  MidiNode midi_node;
   PresetNode preset_node;
   CueNode cue_node;
   EditNode edit_node;

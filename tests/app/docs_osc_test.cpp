@@ -44,6 +44,7 @@ class LocalEngine {
     options.fast = true;
     link_.on_scene_request = [](const Message&, const CommandOrigin&) {
     };  // scenes and takes are covered by another test
+    link_.on_midi_request = link_.on_scene_request;
     engine_ = std::make_unique<engine::Engine>(link_, options);
     const Result<void> started = engine_->start();
     EXPECT_TRUE(started.ok()) << started.error();

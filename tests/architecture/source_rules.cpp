@@ -31,6 +31,7 @@ constexpr std::array kModules{
     Module{"net/osc", "properties model engine"},
     Module{"net/lighting", "properties model engine"},
     Module{"net/link", "properties model engine"},
+    Module{"net/midi", "properties model engine"},
     Module{"net/console", "properties model engine"},
     Module{"net/oscquery", "properties model engine"},
     Module{"ui/render", "properties model engine"},
@@ -40,10 +41,9 @@ constexpr std::array kModules{
     Module{"lib", "properties model sim script engine"},
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
-    Module{
-        "app",
-        "properties model sim script engine net/osc net/lighting net/link net/console net/oscquery ui/render ui/panel "
-        "export experiments"},
+    Module{"app",
+           "properties model sim script engine net/osc net/lighting net/link net/midi net/console net/oscquery ui/render "
+           "ui/panel export experiments"},
 };
 
 /// Folders that only files of their own module include.
@@ -69,6 +69,7 @@ constexpr std::array kNamespaces{
     Namespace{"net/osc/", "osc"},
     Namespace{"net/lighting/", "lighting"},
     Namespace{"net/link/", "link"},
+    Namespace{"net/midi/", "midi"},
     Namespace{"net/console/", "console"},
     Namespace{"net/oscquery/", "oscquery"},
     Namespace{"ui/render/", "render"},
@@ -97,6 +98,7 @@ constexpr std::array kLibraries{
     Library{"lua", "script"},
     Library{"lauxlib.h", "script"},
     Library{"luajit-2.1/", "script"},
+    Library{"RtMidi.h", "net/midi"},
     Library{"boost/", "net/oscquery"},
     Library{"epoxy/", "ui/render"},
     Library{"GL/", "ui/render"},

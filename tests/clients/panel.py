@@ -274,6 +274,14 @@ def play(browser, limber, shots):
                  " c.dispatchEvent(new Event('input')); c.dispatchEvent(new Event('change')); })()")
     browser.until("fetch('/visuals/background?VALUE').then(r => r.json()).then(j => j.VALUE[1] > 0.99 && j.VALUE[2] > 0.99)",
                   "a color is set")
+    # MIDI: a touched control is learned and keeps its value
+    browser.eval("document.getElementById('midi').click()")
+    browser.eval(f"({ROW % 'lively'}).querySelector('input').click()")
+    browser.until("document.getElementById('midi-state').textContent === 'Move the MIDI control for /scene/lively'",
+                  "a touched control is learned")
+    browser.until("fetch('/scene/lively?VALUE').then(r => r.json()).then(j => j.VALUE[0] === false)", "it keeps its value")
+    browser.eval("document.getElementById('midi').click()")
+    browser.until("fetch('/midi/learning?VALUE').then(r => r.json()).then(j => j.VALUE[0] === '')", "learning is canceled")
     # added objects, and search
     browser.eval("document.querySelector('[data-path=\"/physics/body\"]').open = true")
     browser.until("Boolean(document.querySelector('[data-path=\"/physics/body/arm%20one\"]'))", "bodies are listed")

@@ -2,7 +2,9 @@
 #include "app/cli/play_options.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -90,6 +92,28 @@ void add_network(CLI::App& play, NetworkOptions& o) {
   play.add_flag("--link", o.link,
                 "Join an Ableton Link session: sim.clock follows its beat, and other programs follow /clock/tempo.");
   play.add_flag("--osc-optional", o.osc_optional, "Continue if a port is not available.");
+}
+
+// a scene behind --midi would be taken for its value
+std::string port_name_fault(const std::string& text) {
+  std::error_code error;
+  if (!std::filesystem::exists(text, error)) return {};
+  return fmt::format("'{}' is a file, not a MIDI device; write it before --midi, or write --midi all", printable(text));
+}
+
+void add_midi(CLI::App& play, MidiChoices& o) {
+  play.add_option("--midi", o.use,
+                  "MIDI devices to open: those with this text in their name; without a text, all. By default they are "
+                  "opened when the scene has a map, SCENE.midi.json, or a control is to be learned.")
+      ->type_name("all|NAME|off")
+      ->expected(0, 1)
+      ->check(CLI::Validator([](std::string& text) { return port_name_fault(text); }, "", "name"));
+  play.add_option("--midi-sync", o.clock_from,
+                  "Follow the MIDI clock of the device with this text in its name: tempo, beat, start and stop.")
+      ->type_name("NAME");
+  play.add_option("--midi-clock", o.clock_to,
+                  "Send a MIDI clock that follows /clock to the device with this text in its name.")
+      ->type_name("NAME");
 }
 
 void add_log(CLI::App& play, LogOptions& o) {
@@ -188,6 +212,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
   add_run_options(*play, o);
   const StartOptions start = add_start_options(*play, o);
   add_network(*play, o.network);
+  add_midi(*play, o.network.midi);
   CLI::Option* const save_scene = add_model_options(*play, o);
   play->add_flag("--watch", o.watch,
                  "With --fast: reload the scene when one of its files is saved, as is done in real time.");

@@ -88,7 +88,7 @@ std::vector<const PropertyTable*> described_classes() {
   all.insert(all.end(), {&sim::Visuals::table(), &sim::Camera::table(), &sim::Appearance::table(), &sim::Shape::table(),
                          &sim::FixtureList::table(), &sim::Fixture::table(), &engine::Transport::table(),
                          &engine::PresetNode::table(), &engine::CueNode::table(), &engine::EditNode::table(),
-                         &engine::TakeNode::table(), &engine::CounterNode::table()});
+                         &engine::TakeNode::table(), &engine::CounterNode::table(), &engine::MidiNode::table()});
   return all;
 }
 

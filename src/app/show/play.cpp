@@ -32,6 +32,7 @@
 #include "net/console/server.h"
 #include "net/lighting/output.h"
 #include "net/link/link_session.h"
+#include "net/midi/service.h"
 #include "net/osc/network.h"
 #include "script/scene/scene.h"
 
@@ -119,6 +120,20 @@ Result<lighting::LightingOptions> parse_lights(const PlayOptions& options) {
   return lights;
 }
 
+// batch runs and replays use no devices unless requested
+midi::MidiOptions parse_midi(const PlayOptions& options) {
+  using Use = midi::MidiOptions::Use;
+  const MidiChoices& chosen = options.network.midi;
+  midi::MidiOptions midi;
+  const bool asked = !chosen.use.empty() || !chosen.clock_from.empty() || !chosen.clock_to.empty();
+  midi.use = asked ? Use::on : options.fast || !options.take.replay.empty() ? Use::off : Use::on_demand;
+  if (chosen.use == "off") midi.use = Use::off;
+  if (chosen.use != "all" && chosen.use != "off" && chosen.use != "true") midi.ports = chosen.use;
+  midi.clock_from = chosen.clock_from;
+  midi.clock_to = chosen.clock_to;
+  return midi;
+}
+
 Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std::string& scene) {
   engine::EngineOptions engine;
   engine.scene = scene;
@@ -203,6 +218,7 @@ struct Outputs {
   osc::OscOptions osc;
   QueryAddresses query;
   lighting::LightingOptions lights;
+  midi::MidiOptions midi;
 };
 
 // opens the ports of OSC and OSCQuery and prints them
@@ -247,12 +263,15 @@ class Playing {
         engine_(link_, with_notifier(std::move(engine_options))),
         network_(link_, osc_, engine::transient_offsets()),
         lights_(link_, outputs.lights),
+        midi_(link_, outputs.midi),
         console_(link_, {.folder = "", .scene = printable(options.scene)}),
         query_(link_, query_host(network_, osc_.allow, options.network.query_names)) {
     if (!options.network.zeroconf.empty()) announcer_.emplace(options.network.zeroconf);
     if (!options.run.out.empty()) run_file_.emplace(options.run.out, options.scene, options.fast || options.lockstep);
     if ((!options.fast || options.watch) && options.take.replay.empty())
       scene_loader_.emplace(link_, engine_, scene_file_, &models_);
+    if (scene_loader_) scene_loader_->on_scene([this](const std::string& scene) { midi_.set_scene(scene); });
+    midi_.set_scene(scene_file_);
   }
 
   /// Returns the exit code.
@@ -310,6 +329,7 @@ class Playing {
     if (const Result<void> open = open_ports(osc_, at, network_, query_); !open)
       return fail_start(kMachineError, open.error());
     lights_.start();
+    midi_.start();
     if (options_.network.lights) {
       for (const std::string& line : lights_.status_lines()) print_notice("{}", line);
     }
@@ -346,6 +366,7 @@ class Playing {
       announcer_.reset();
       lights_.stop();
       link_session_.stop();
+      midi_.stop();
       query_.stop();
       network_.stop();
       console_.stop();
@@ -366,6 +387,7 @@ class Playing {
   lighting::LightingOutput lights_;
   link::LinkSession link_session_{link_, link_program()};
   std::optional<Announcer> announcer_;
+  midi::MidiService midi_;
   console::ConsoleServer console_;
   std::optional<SceneLoader> scene_loader_;
   std::optional<RunFile> run_file_;
@@ -454,7 +476,7 @@ int play_file(const PlayOptions& options, const Outputs& outputs) {
 }  // namespace
 
 int play_command(const PlayOptions& options) {
-  const Result<void> resources = system::check_resources({24, 11 + options.threads, std::size_t{512} * 1024});
+  const Result<void> resources = system::check_resources({24, 13 + options.threads, std::size_t{512} * 1024});
   if (!resources) return fail(kMachineError, resources.error());
   system::block_signals();
   if (const Result<void> open = open_output(options); !open) return fail(kMachineError, open.error());
@@ -471,7 +493,7 @@ int play_command(const PlayOptions& options) {
   if (options.fast && !*query) query->emplace();  // no port either
   Result<lighting::LightingOptions> lights = parse_lights(options);
   if (!lights) return fail(kUsageError, lights.error());
-  return play_file(options, {std::move(*osc), std::move(*query), std::move(*lights)});
+  return play_file(options, {std::move(*osc), std::move(*query), std::move(*lights), parse_midi(options)});
 }
 
 }  // namespace limber::app

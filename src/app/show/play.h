@@ -19,7 +19,14 @@ struct LogOptions {
   bool quiet = false;
 };
 
-/// Options of OSC and OSCQuery.
+/// Options of MIDI.
+struct MidiChoices {
+  std::string use;         ///< Empty: not given; "all", "off", or part of the names of the ports.
+  std::string clock_from;  ///< Part of the name of the port whose clock is followed.
+  std::string clock_to;    ///< Part of the name of the port that gets a clock.
+};
+
+/// Options of OSC and OSCQuery, lights and MIDI.
 struct NetworkOptions {
   std::string osc_in;   ///< Empty: not given.
   std::string osc_tcp;  ///< Empty: not given.
@@ -32,6 +39,7 @@ struct NetworkOptions {
   std::vector<std::string> lights_out;  ///< Targets of lighting output.
   std::string zeroconf;                 ///< Name to announce; empty: not given.
   bool link = false;                    ///< Take part in an Ableton Link session.
+  MidiChoices midi;
 };
 
 /// Options of takes.

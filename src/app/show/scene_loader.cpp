@@ -213,9 +213,10 @@ bool SceneLoader::handle(const SceneRequest& request) {
                                 std::filesystem::path(folder_).filename().string(), name_hint(name, names)));
     return false;
   }
-  const Result<void> changed =
-      engine_.change_scene((std::filesystem::path(folder_) / (name + ".lua")).string(), request.stops_before);
+  const std::string file = (std::filesystem::path(folder_) / (name + ".lua")).string();
+  const Result<void> changed = engine_.change_scene(file, request.stops_before);
   if (changed.ok()) {
+    on_scene_(file);
     log_info("{} plays from its start", name);
     link_.push_out({engine::Outgoing::Destination::reply, request.origin, {"/transport/playing", {Arg::of(name)}}});
   } else {

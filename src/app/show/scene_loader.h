@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "app/show/file_watch.h"
@@ -28,6 +30,8 @@ class SceneLoader {
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
 
+  /// Sets a function that is called with the file of another scene, once it plays. Call it before start(). [main]
+  void on_scene(std::function<void(const std::string& scene)> changed) { on_scene_ = std::move(changed); }
   /// Starts to watch the files of the scene, which must have run. [main]
   void start();
   /// Adds a model, given by its file or a folder with one model, to the running scene. The thread reports the result to
@@ -64,6 +68,7 @@ class SceneLoader {
   std::string folder_;
   std::string takes_folder_;  // the folder of the show's takes
   FileWatch::Mode mode_;
+  std::function<void(const std::string&)> on_scene_ = [](const std::string&) {};
   BoundedQueue<SceneRequest> requests_{64, std::size_t{1} << 16};
   system::Wake wake_;
   bool reload_pending_ = false;  // a file was saved while a take played; used by the thread only

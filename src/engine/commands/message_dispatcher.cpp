@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
+#include "engine/commands/midi_commands.h"
 #include "engine/commands/route_commands.h"
 #include "sim/mocap/mocap_list.h"
 #include "sim/shapes/shape.h"
@@ -104,6 +105,7 @@ MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
     entries_[std::string(special.address)].handler = is_of("/preset/")  ? &MessageDispatcher::execute_preset
                                                      : is_of("/take/")  ? &MessageDispatcher::request_take
                                                      : is_of("/route/") ? &MessageDispatcher::execute_route
+                                                     : is_of("/midi/")  ? &MessageDispatcher::request_midi
                                                                         : &MessageDispatcher::answer_list;
   }
   entries_["/list/presets"].handler = &MessageDispatcher::execute_preset;
@@ -472,6 +474,8 @@ Outcome MessageDispatcher::execute_route(const Message& message) {
   std::array<char, 96> buffer;
   return edit_routes(world_, normalized_address(message.address, buffer), message.args);
 }
+
+Outcome MessageDispatcher::request_midi(const Message& message) { return check_midi_request(message); }
 
 Outcome MessageDispatcher::request_take(const Message& message) {
   std::array<char, 96> buffer;

@@ -17,6 +17,7 @@ struct Outcome {
     unknown,        ///< Unknown address; `error` suggests similar ones.
     take_request,   ///< A request about takes, which the engine executes at the end of the tick.
     cue_request,    ///< A request to start the cue that its argument names.
+    midi_request,   ///< A request to learn or forget the MIDI control of an address.
     scene_request,  ///< A request about scenes, which needs file access: to be passed to EngineLink::on_scene_request.
   };
   Kind kind = Kind::applied;

@@ -56,6 +56,10 @@ inline constexpr SpecialAddress kSpecialAddresses[] = {
     {"/cue/remove", "cue", "Removes a cue from the cue file."},
     {"/cue/move", "cue number", "Moves a cue, so that it has this number."},
     {"/cue/set", "cue field value", "Sets a field of a cue in the cue file; nil or an empty text removes it."},
+    {"/midi/learn", "address [component] [mode]",
+     "The next MIDI control that moves sets this address from now on; component: of a vector, from 1; mode: absolute, "
+     "relative, relative_offset, relative_sign, toggle, momentary or trigger. Without arguments: stops learning."},
+    {"/midi/forget", "address [component]", "Removes the MIDI controls of an address."},
     {"/take/record", "[name]", "Resets the scene and records all input from its start, so that it can be replayed."},
     {"/take/stop", "", "Ends the recording of a take and completes its file, or ends the take that plays."},
     {"/take/play", "[name]",

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/text.h"
+#include "engine/cues/json_text.h"
 #include "engine/presets/presets.h"
 
 namespace limber::engine {
@@ -24,30 +25,6 @@ constexpr int kMaxCueDepth = 8;  // of nested values
 constexpr std::array<std::string_view, 9> kCueFields = {"name", "preset", "time",   "easing", "messages",
                                                         "at",   "when",   "follow", "note"};
 constexpr std::array<std::string_view, 3> kCueStarts = {"now", "beat", "bar"};  // in the order of CueStart
-
-std::string line_of(std::string_view text, std::size_t byte) {
-  const std::string_view before = text.substr(0, std::min(byte, text.size()));
-  return fmt::format("line {}", 1 + std::ranges::count(before, '\n'));
-}
-
-// Parses JSON. The error names the line.
-Result<CueJson> parse_json(std::string_view text) {
-  bool too_deep = false;
-  const auto limit_depth = [&](int depth, CueJson::parse_event_t, CueJson&) {
-    too_deep = too_deep || depth > kMaxCueDepth;
-    return depth <= kMaxCueDepth;
-  };
-  try {
-    CueJson json = CueJson::parse(text, limit_depth);
-    if (too_deep) return Error{"its values are nested too deeply"};
-    return json;
-  } catch (const CueJson::parse_error& error) {
-    return Error{fmt::format("{}: not valid JSON; a comma, a quote or a bracket is missing or too much",
-                             line_of(text, error.byte))};
-  } catch (const CueJson::exception&) {
-    return Error{"not valid JSON: a number is too large"};
-  }
-}
 
 // Parses one cue. Errors begin with the name of the field.
 class CueParser {
@@ -210,7 +187,7 @@ std::span<const std::string_view> cue_starts() { return kCueStarts; }
 
 Result<CueList> parse_cues(std::string_view text) {
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos) return CueList{};
-  const Result<CueJson> json = parse_json(text);
+  const Result<CueJson> json = parse_json_text(text, kMaxCueDepth);
   if (!json) return Error{json.error()};
   if (const Result<void> header = check_header(*json); !header) return Error{header.error()};
   CueList cues;

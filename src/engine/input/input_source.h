@@ -43,6 +43,8 @@ class InputSource {
   virtual Outcome request_cue(const CueRequest&) { return {}; }
   /// True if a cue waits for this message.
   virtual bool starts_cue(const Message&) { return false; }
+  /// Passes on a request to learn or forget a MIDI control. The default ignores it: a replay changes no map.
+  virtual Outcome request_midi(const Message&, const CommandOrigin&) { return {}; }
 
   /// Input of a run of the scene.
   struct SceneFiles {

@@ -205,6 +205,13 @@ Outcome LiveInput::rewind(const Transport::RewindRequest& request, const Command
   return outcome;
 }
 
+Outcome LiveInput::request_midi(const Message& message, const CommandOrigin& origin) {
+  if (!show_.link.on_midi_request)
+    return Outcome::rejected("MIDI is off; start limber without --midi off, and in real time");
+  show_.link.on_midi_request(message, origin);
+  return {};
+}
+
 bool LiveInput::must_rerun() {
   if (!show_.link.on_rerun || !show_.options.in_real_time()) return true;
   show_.link.on_rerun();

@@ -95,6 +95,7 @@ class LiveInput final : public InputSource {
   Outcome request_take(const Message& message) override { return recording_.request(message); }
   Outcome request_cue(const CueRequest& request) override { return cues_.request(request); }
   bool starts_cue(const Message& message) override { return cues_.starts(message); }
+  Outcome request_midi(const Message& message, const CommandOrigin& origin) override;
   bool must_rerun() override;
   bool is_paced() const override;
   void end_pass() override;

@@ -14,6 +14,7 @@
 #include "engine/output/health.h"
 #include "engine/output/lighting_status.h"
 #include "engine/output/message_log.h"
+#include "engine/output/midi_status.h"
 #include "engine/output/snapshot.h"
 #include "engine/output/value_snapshot.h"
 
@@ -45,6 +46,7 @@ struct EngineLink {
   Health health;            ///< Things dropped, reduced, disabled or lost.
   MessageLog message_log;   ///< Messages received and sent by OSC and OSCQuery, for monitors.
   LightingStatus lighting;  ///< Of the output to lights.
+  MidiStatus midi;          ///< Of MIDI devices.
   ChangeLog changes;        ///< Recent changes of values and their sources, for monitors.
 
   /// Called after a push to `output_queue`, `osc_config` or `value_snapshots`, for example to signal an eventfd. Set
@@ -58,6 +60,8 @@ struct EngineLink {
   /// Called with messages about scenes and takes that need file access. The callee must have another thread answer them
   /// and call Engine::change_scene() or play_take(). Null: scenes can't be changed. Set before start.
   std::function<void(const Message&, const CommandOrigin&)> on_scene_request;
+  /// Called with /midi/learn and /midi/forget. Null: MIDI is off. Set before start.
+  std::function<void(const Message&, const CommandOrigin&)> on_midi_request;
   /// Called after a push to `command_queue`, so that a paused engine need not poll. Set by the engine.
   std::function<void()> wake_engine = [] {};
 

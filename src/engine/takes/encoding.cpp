@@ -142,7 +142,7 @@ std::optional<InputCodec::Header> InputCodec::parse_header(std::string_view key)
   if (end == key.npos) return {};
   TakeDecoder in(key);
   const std::uint8_t source = in.byte();
-  if (source > static_cast<std::uint8_t>(CommandSource::script)) return {};
+  if (source > static_cast<std::uint8_t>(CommandSource::midi)) return {};
   Header header;
   header.origin.source = static_cast<CommandSource>(source);
   header.origin.ip = static_cast<std::uint32_t>(in.fixed_int(4));

@@ -141,6 +141,8 @@ void GuiContext::handle_replies() {
       rejection = {fmt::format("{}: {}", args[0].text, args[1].text), clock + kRejectionDuration};
     } else if (reply.message.address == "/transport/added" && !args.empty()) {
       show_notice(fmt::format("{} was added to the scene", args[0].text));
+    } else if (reply.message.address == "/midi/learned" && args.size() == 2) {
+      show_notice(fmt::format("{} sets {}", args[1].text, args[0].text));
     } else if (reply.message.address == "/transport/rewound" && args.size() > 2) {
       show_notice(fmt::format("Rewound only {:.2f} s: {}", args[0].number, args[2].text));
     }

@@ -44,7 +44,7 @@
   const TITLES = {
     '/physics/sim': 'World', '/physics/body': 'Bodies', '/physics/gear': 'Gears', '/visuals': 'View',
     '/lighting': 'Lighting', '/preset': 'Presets',
-    '/take': 'Takes', '/edit': 'Undo', '/osc': 'OSC counters',
+    '/midi': 'MIDI', '/take': 'Takes', '/edit': 'Undo', '/osc': 'OSC counters',
   };
   const MEMBERS = { part: 'Parts', joint: 'Joints', motor: 'Motors', behavior: 'Behaviors' };
 

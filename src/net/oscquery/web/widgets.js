@@ -149,6 +149,7 @@ const widgets = (() => {
   // only the latest value. Values received while the user drags are shown after the release.
   function row(node, withPath) {
     const box = element('div', 'row');
+    if (node.ACCESS !== 1) box.dataset.address = node.FULL_PATH;
     const title = element('span', 'name');
     title.title = tooltip(node);
     title.append(element('span', 'label', label(node)));

@@ -344,6 +344,25 @@ void route_menu(GuiContext& context, const PropertyHandle& handle) {
   context.names.add("menu:route_to");
 }
 
+// Offers to set the property, or each of its numbers, by a MIDI control.
+void midi_menu(GuiContext& context, const PropertyHandle& handle) {
+  const Property& property = *handle.ref.property;
+  const bool is_action = property.kind == PropertyKind::action;
+  if (!context.link.midi.available() || !(property.writable() || is_action)) return;
+  constexpr std::array kAxes = {"x", "y", "z", "w"};
+  const std::size_t count = std::max<std::size_t>(property.width, 1);
+  for (std::size_t i = 0; i < count; i++) {
+    const std::string label = count == 1 ? "MIDI learn" : fmt::format("MIDI learn {}", kAxes[i]);
+    std::vector<Arg> args = {Arg::of(std::string_view(handle.path))};
+    if (count > 1) args.push_back(Arg::of(static_cast<double>(i + 1)));
+    if (ImGui::Selectable(label.c_str())) {
+      context.send("/midi/learn", std::move(args));
+      context.show_notice("Move the control for " + handle.path);
+    }
+    context.names.add(count == 1 ? "menu:midi_learn" : fmt::format("menu:midi_learn_{}", kAxes[i]));
+  }
+}
+
 }  // namespace
 
 void property_menu(GuiContext& context, const PropertyHandle& handle) {
@@ -361,6 +380,7 @@ void property_menu(GuiContext& context, const PropertyHandle& handle) {
     context.names.add("menu:plot");
   }
   route_menu(context, handle);
+  midi_menu(context, handle);
   ImGui::EndPopup();
 }
 

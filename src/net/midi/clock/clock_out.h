@@ -1,0 +1,46 @@
+// ClockOut: sends a MIDI clock that follows the beat of the simulation. [one thread]
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+
+namespace limber::midi {
+
+/// The clock of the simulation at a moment.
+struct BeatReading {
+  double beat = 0;
+  double tempo = 120;  ///< Beats per minute.
+  bool playing = false;
+};
+
+class ClockOut {
+ public:
+  using Send = std::function<void(std::span<const std::uint8_t> bytes)>;
+  static constexpr double kJump = 0.5;            ///< Beats: a larger change is a new song position.
+  static constexpr double kMaxUnconfirmed = 0.5;  ///< s: without readings, no pulses are sent after this time.
+
+  /// Sets the newest reading. `now`: s.
+  void update(const BeatReading& reading, double now);
+  /// Sends what is due: at most one pulse. Returns the time of the next one, s; nothing while it is stopped.
+  std::optional<double> send_due(double now, const Send& send);
+  /// Sends stop, if it is running: at the end of the show, or before the port is closed.
+  void stop(const Send& send);
+  /// The port was opened: the position is sent again.
+  void restart() { running_ = false; }
+
+ private:
+  double beat_at(double now) const;
+  void begin(double beat, const Send& send);
+
+  std::optional<BeatReading> reading_;
+  double read_at_ = 0;           // s
+  double offset_ = 0;            // beats: corrects the reading's jitter, decays
+  bool running_ = false;         // start was sent
+  std::int64_t next_pulse_ = 0;  // number of the next pulse; pulse 0 is at beat 0
+  double last_sent_ = 0;         // s
+};
+
+}  // namespace limber::midi
