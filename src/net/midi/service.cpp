@@ -208,14 +208,14 @@ void MidiService::push_messages(std::int64_t now) {
 // Reads the newest values, and requests the next ones.
 void MidiService::read_values(std::int64_t now) {
   const std::shared_ptr<const engine::ValueSnapshot> snapshot = link_.value_snapshots.read();
-  if (snapshot != nullptr) {
-    mapping_.update(snapshot);
-    clocks_.update(*snapshot, now);
+  if (snapshot != nullptr) mapping_.update(snapshot);
+  if (!options_.clock_to.empty()) {
+    if (const std::shared_ptr<const engine::Snapshot> tick = link_.snapshots.read()) clocks_.update(*tick, now);
+    times_.clock = now + kClockInterval;
   }
-  const bool clock = !options_.clock_to.empty();
   if (now < times_.values) return;
-  times_.values = now + (clock ? kClockInterval : Feedback::kInterval);
-  if (clock || mapping_.needs_devices()) (void)link_.request_value_snapshot();
+  times_.values = now + Feedback::kInterval;
+  if (mapping_.needs_devices()) (void)link_.request_value_snapshot();
 }
 
 void MidiService::send_feedback(std::int64_t now) {
@@ -236,7 +236,7 @@ std::int64_t MidiService::next_time(std::int64_t now) const {
   std::int64_t next = std::min(now + kIdleInterval, devices_.next_scan());
   if (mapping_.needs_devices()) next = std::min(next, times_.feedback);
   if (const std::optional<std::int64_t> due = mapping_.learner().due()) next = std::min(next, *due);
-  if (!options_.clock_to.empty()) next = std::min(next, times_.values);
+  if (!options_.clock_to.empty()) next = std::min(next, times_.clock);
   if (next_pulse_) next = std::min(next, *next_pulse_);
   return next;
 }

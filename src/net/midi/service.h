@@ -57,7 +57,7 @@ class MidiService {
     friend std::size_t weight_of(const Request& request) { return sizeof request + engine::weight_of(request.message); }
   };
   struct Times {  // ns
-    std::int64_t batch = 0, feedback = 0, status = 0, values = 0, moved = 0;
+    std::int64_t batch = 0, feedback = 0, status = 0, values = 0, clock = 0, moved = 0;
   };
   void run();
   bool is_on() const;

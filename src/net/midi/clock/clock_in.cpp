@@ -169,7 +169,7 @@ std::vector<Message> ClockIn::drain(double now) {
   synced_beat_ = static_cast<std::int64_t>(std::floor(static_cast<double>(tracker_.number()) / kPulsesPerBeat));
   const double beat = (now - line->begin) / line->period / kPulsesPerBeat;
   const double tempo = std::clamp(60 / (line->period * kPulsesPerBeat), kMinTempo, kMaxTempo);
-  messages.push_back({"/clock/sync", {Arg::of(std::max(beat, 0.0)), Arg::of(tempo)}});
+  messages.push_back({"/clock/sync", {Arg::of(std::max(beat, 0.0)), Arg::of(tempo), Arg::of(now)}});
   return messages;
 }
 

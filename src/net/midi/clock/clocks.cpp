@@ -1,37 +1,14 @@
-// Clocks: the readouts of /clock.
+// Clocks: from snapshots to devices, and back.
 #include "net/midi/clock/clocks.h"
-
-#include <cmath>
 
 namespace limber::midi {
 
-namespace {
-
-std::optional<double> clock_value(const engine::ValueSnapshot& snapshot, std::string_view path) {
-  const Result<TreePropertyRef> found = snapshot.tree->find(path);
-  if (!found || found->property == nullptr) return std::nullopt;
-  const engine::PropertyValue value = snapshot.value(snapshot.tree->location(*found));
-  if (value.numbers == nullptr || !std::isfinite(value.numbers[0])) return std::nullopt;
-  return value.numbers[0];
-}
-
-}  // namespace
-
 void Clocks::accept(const MidiMessage& message, std::int64_t time) { in_.accept(message, seconds(time)); }
 
-std::optional<BeatReading> Clocks::reading_of(const engine::ValueSnapshot& snapshot) {
-  const std::optional<double> beat = clock_value(snapshot, "/clock/beat");
-  const std::optional<double> tempo = clock_value(snapshot, "/clock/tempo");
-  const std::optional<double> playing = clock_value(snapshot, "/clock/playing");
-  if (!beat || !tempo || !playing) return std::nullopt;
-  const bool paused = snapshot.snapshot != nullptr && snapshot.snapshot->paused;
-  return BeatReading{*beat, *tempo, *playing != 0 && !paused};
-}
-
-void Clocks::update(const engine::ValueSnapshot& snapshot, std::int64_t now) {
-  if (snapshot.number == snapshot_) return;
-  snapshot_ = snapshot.number;
-  if (const std::optional<BeatReading> reading = reading_of(snapshot)) out_.update(*reading, seconds(now));
+void Clocks::update(const engine::Snapshot& snapshot, std::int64_t now) {
+  if (snapshot.tick == tick_ && !snapshot.paused) return;
+  tick_ = snapshot.tick;
+  out_.update({snapshot.clock.beat, snapshot.clock.tempo, snapshot.clock.playing && !snapshot.paused}, seconds(now));
 }
 
 ClockOut::Send Clocks::sender(Devices& devices) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/output/value_snapshot.h"
+#include "engine/output/snapshot.h"
 #include "net/midi/clock/clock_in.h"
 #include "net/midi/clock/clock_out.h"
 #include "net/midi/devices.h"
@@ -21,7 +21,7 @@ class Clocks {
   /// Returns the messages for the simulation.
   std::vector<Message> drain(std::int64_t now) { return in_.drain(seconds(now)); }
   /// Reads the beat of a snapshot. `now`: ns.
-  void update(const engine::ValueSnapshot& snapshot, std::int64_t now);
+  void update(const engine::Snapshot& snapshot, std::int64_t now);
   /// Sends what is due to the devices that get a clock. Returns the time of the next call, ns.
   std::optional<std::int64_t> send_due(Devices& devices, std::int64_t now);
   /// Sends stop to them.
@@ -31,12 +31,11 @@ class Clocks {
 
  private:
   static double seconds(std::int64_t nanoseconds) { return static_cast<double>(nanoseconds) * 1e-9; }
-  static std::optional<BeatReading> reading_of(const engine::ValueSnapshot& snapshot);
   static ClockOut::Send sender(Devices& devices);
 
   ClockIn in_;
   ClockOut out_;
-  std::uint64_t snapshot_ = 0;  // number of the last one
+  std::uint64_t tick_ = 0;  // of the last snapshot
 };
 
 }  // namespace limber::midi
