@@ -67,7 +67,7 @@ TEST(SceneDiff, NamesTheDifferentPropertiesOfEachObject) {
   b.set_explicitly(arm.find_motor("slide")->id(), "mode", {3});
   b.set_explicitly(b.world.id(), "gravity", {0, 0, -1});
   const SceneDiff d = compare(a.spec(), b.spec());
-  EXPECT_EQ(d.world, bit(sim::World::table().at("gravity").index));
+  EXPECT_EQ(d.singles[kWorldNode], bit(sim::World::table().at("gravity").index));
   ASSERT_EQ(d.bodies.size(), 1u);
   EXPECT_EQ(b.spec().bodies[d.bodies[0].new_index].name, "arm");
   EXPECT_FALSE(d.bodies[0].rebuild);

@@ -122,7 +122,9 @@ std::vector<std::string> play(ClockIn& clock, int from, int to, double tempo, do
     for (const Message& message : clock.drain(time)) {
       std::string text = message.address;
       const bool has_time = message.args.size() == 3;
-      if (has_time) EXPECT_EQ(message.args[2].number, time);
+      if (has_time) {
+        EXPECT_EQ(message.args[2].number, time);
+      }
       for (std::size_t k = 0; k < message.args.size() - (has_time ? 1 : 0); k++)
         text += fmt::format(" {:.3f}", message.args[k].number);
       texts.push_back(text);

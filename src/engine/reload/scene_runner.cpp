@@ -282,7 +282,7 @@ SceneReloader::ApplyResult SceneRunner::apply_candidate(ReloadCandidate& candida
   show_.history.clear("the scene was run again there");
   show_.presets.set_script_preset(reloader_.script_preset());
   static const Property& seed = sim::World::table().at("seed");
-  if ((candidate.diff().world >> seed.index & 1u) != 0) show_.scene_seed = session.world.seed();
+  if ((candidate.diff().singles[kWorldNode] >> seed.index & 1u) != 0) show_.scene_seed = session.world.seed();
   if (!is_start) return result;
   show_.scene_seed = session.world.seed();
   if (show_.rules.frames_scenes) sim::frame_scene(session.world);

@@ -137,6 +137,7 @@ struct BodyDescription {
 
 /// The nodes with settings that each world has once: the world, background, camera, appearance, clock.
 inline constexpr std::size_t kSingleNodes = 5;
+inline constexpr std::size_t kWorldNode = 0;  ///< The world's index among them.
 std::array<NodeId, kSingleNodes> single_nodes(const sim::World& world);
 
 struct SceneSpec {

@@ -57,7 +57,8 @@ void Feedback::update(const Bindings& bindings, const std::vector<std::string>& 
   for (std::size_t n = 0; n < list.size() && sent < kMaxMessages; n++) {
     const std::size_t index = (next_ + n) % list.size();
     const Binding& binding = list[index];
-    const std::optional<int> value = wants_feedback(binding) ? binding.control_value() : std::nullopt;
+    if (!wants_feedback(binding)) continue;
+    const std::optional<int> value = binding.control_value();
     const bool moving =
         binding.mode() == ControlMode::absolute && binding.moved_at() != 0 && now - binding.moved_at() < kRestTime;
     if (!value || moving) continue;
