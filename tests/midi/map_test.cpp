@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <string>
+#include <string_view>
 
 namespace limber::midi::test {
 namespace {
@@ -110,6 +113,15 @@ TEST(MidiMap, ErrorsNameTheLineOfJson) {
   EXPECT_EQ(parse_midi_map("{}").error(), "not a MIDI map; expected {\"limber midi\": 1, \"entries\": [ … ]}");
   EXPECT_EQ(parse_midi_map(R"({"limber midi": 2, "entries": []})").error(),
             "it was written by a newer version of Limber; \"limber midi\" must be 1");
+}
+
+TEST(MidiMap, TheExampleOfTheDocumentationIsValid) {
+  std::ifstream page(LIMBER_SOURCE_DIR "/docs/howto/midi.md");
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  const std::size_t begin = text.find("```json\n") + 8;
+  const Result<MidiMap> map = parse_midi_map(std::string_view(text).substr(begin, text.find("```", begin) - begin));
+  ASSERT_TRUE(map.ok()) << map.error();
+  EXPECT_EQ(map->size(), 8u);
 }
 
 TEST(MidiMap, PortsMatchByAPartOfTheirName) {

@@ -138,7 +138,7 @@ TEST(MidiMapping, ANoteScalesItsVelocity) {
 TEST(MidiMapping, ActionsAreTriggered) {
   MidiRig rig(map_of(R"({"kind": "note", "number": 36, "address": "/transport/pause"})"));
   rig.move({0x90, 36, 100});
-  EXPECT_EQ(rig.read("/transport/paused"), 1);
+  EXPECT_EQ(rig.read("/physics/sim/paused"), 1);
 }
 
 TEST(MidiMapping, TwoControlsSetOneVector) {
@@ -178,9 +178,44 @@ TEST(MidiMapping, AFloodBecomesOneMessagePerBatch) {
   EXPECT_EQ(sender_text(commands[0].origin), "midi");
 }
 
+TEST(MidiMapping, UndoTakesBackAWholeMovement) {
+  MidiRig rig(map_of(R"({"kind": "cc", "number": 7, "address": "/scene/wind", "takeover": "jump"})"));
+  for (const int position : {70, 80, 90}) {
+    rig.devices.send(kNano, {0xb0, 7, static_cast<std::uint8_t>(position)});
+    rig.pass(20);
+    rig.show.ticks(2);
+  }
+  rig.settle();
+  rig.pass(1000);
+  rig.move({0xb0, 7, 100});
+  rig.show.ticks(60);  // steps that another controller extends are not undone
+  rig.send("/edit/undo");
+  EXPECT_DOUBLE_EQ(rig.read("/scene/wind"), 90 / 127.0);
+  rig.send("/edit/undo");
+  EXPECT_EQ(rig.read("/scene/wind"), 0.5);
+}
+
+TEST(MidiMapping, ATakeReplaysWithoutADevice) {
+  MidiRig rig(map_of(R"({"kind": "cc", "number": 7, "address": "/scene/wind", "takeover": "jump"})"), {}, "a.take");
+  for (const int position : {70, 80, 90}) rig.move({0xb0, 7, static_cast<std::uint8_t>(position)});
+  rig.send("/midi/learn", "/scene/waves");
+  rig.send("/take/stop");
+  rig.show.engine.finish_saving();
+  engine::EngineOptions options = engine::test::fast_options();
+  options.replay = rig.take_path("a.take");
+  engine::test::Show replay(std::move(options));
+  int requests = 0;
+  replay.link.on_midi_request = [&](const Message&, const CommandOrigin&) { requests++; };
+  while (!replay.engine.replay_finished()) replay.ticks(1);
+  EXPECT_FALSE(replay.engine.replay_result().diverged_at.has_value());
+  EXPECT_DOUBLE_EQ(replay.read("/scene/wind"), 90 / 127.0);
+  EXPECT_EQ(requests, 0) << "a replay learns nothing";
+}
+
 TEST(MidiFeedback, AnotherSourceMovesTheFader) {
   MidiRig rig(map_of(R"({"kind": "cc", "number": 7, "channel": 2, "address": "/scene/wind"},
                         {"kind": "note", "number": 36, "address": "/scene/mist"})"));
+  rig.feedback();
   EXPECT_EQ(rig.feedback(), Bytes{}) << "the values of the start have been sent before";
   rig.send("/scene/wind", 1);
   EXPECT_EQ(rig.feedback(), (Bytes{0xb1, 7, 127}));

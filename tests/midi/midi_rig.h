@@ -1,6 +1,8 @@
 // A show with a MIDI service on fake ports and fake time.
 #pragma once
 
+#include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
@@ -30,8 +32,9 @@ inline std::string map_of(const std::string& entries) { return "{\"limber midi\"
 class MidiRig {
  public:
   /// `map`: text of the map file; empty: none.
-  explicit MidiRig(const std::string& map = "", MidiOptions options = {}, const char* scene = kMidiScene)
-      : scene_(scene), show(engine::test::fast_options(scene_.path())) {
+  /// `take`: name of a take to record; empty: none.
+  explicit MidiRig(const std::string& map = "", MidiOptions options = {}, const std::string& take = "")
+      : scene_(kMidiScene), show(engine_options(take)) {
     if (!map.empty()) write_map(map);
     devices.plug_in(kNano);
     service = std::make_unique<MidiService>(show.link, std::move(options), std::make_unique<FakePorts>(devices),
@@ -40,6 +43,9 @@ class MidiRig {
     settle();
   }
 
+  std::string take_path(const std::string& take) const {
+    return (std::filesystem::path(scene_.path()).parent_path() / take).string();
+  }
   std::string map_path() const { return MapFile::path_for(scene_.path()); }
   void write_map(const std::string& text) const { std::ofstream(map_path()) << text; }
   std::string map_text() const {
@@ -89,6 +95,12 @@ class MidiRig {
   }
 
  private:
+  engine::EngineOptions engine_options(const std::string& take) const {
+    engine::EngineOptions options = engine::test::fast_options(scene_.path());
+    if (!take.empty()) options.record = take_path(take);
+    return options;
+  }
+
   engine::test::SceneFile scene_;
 
  public:

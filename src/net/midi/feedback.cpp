@@ -57,11 +57,11 @@ void Feedback::update(const Bindings& bindings, const std::vector<std::string>& 
   for (std::size_t n = 0; n < list.size() && sent < kMaxMessages; n++) {
     const std::size_t index = (next_ + n) % list.size();
     const Binding& binding = list[index];
-    if (!wants_feedback(binding)) continue;
-    const std::optional<int> value = binding.control_value();
     const bool moving =
         binding.mode() == ControlMode::absolute && binding.moved_at() != 0 && now - binding.moved_at() < kRestTime;
-    if (!value || moving) continue;
+    if (moving || !wants_feedback(binding)) continue;
+    const std::optional<int> value = binding.control_value();
+    if (!value) continue;
     const MidiEntry& entry = binding.entry();
     const int channel = entry.channel > 0 ? entry.channel : std::max(binding.last_channel(), 1);
     const std::vector<std::uint8_t> bytes = feedback_bytes(entry.kind, channel, entry.number, *value);

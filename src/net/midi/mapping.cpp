@@ -15,9 +15,8 @@ namespace limber::midi {
 
 namespace {
 
-// a range that is so many times as large as a typical value is too wide for a control
-constexpr double kWideRange =
-    1000;  // ranges that are so many times as large as a typical value are too wide for a control
+// a range that is larger by this factor than a typical value is too wide for a control
+constexpr double kWideRange = 1000;
 
 // Parses the arguments of /midi/learn.
 Result<LearnRequest> learn_request(const std::vector<Arg>& args) {

@@ -179,8 +179,10 @@ void MidiService::accept_bytes() {
 void MidiService::accept_message(Device& device, const MidiMessage& message, std::int64_t time) {
   if (devices_.is_clock_source(device)) clocks_.accept(message, time);
   if (!devices_.is_control(device)) return;
+  bool first = true;  // a control change is the first interpretation, of which a parameter is the more specific one
   device.reader.accept(message, [&](const ControlEvent& event) {
-    last_event_ = event_text(event, device.name);
+    const bool is_parameter = event.kind == ControlKind::nrpn || event.kind == ControlKind::rpn;
+    if (std::exchange(first, false) || is_parameter) last_event_ = event_text(event, device.name);
     mapping_.accept(device.name, event, time);
     if (time - times_.moved > kGestureGap) gesture_ = static_cast<std::uint16_t>(gesture_ % 0xfffeU + 1);
     times_.moved = time;
