@@ -45,6 +45,7 @@ std::optional<std::int64_t> LightStream::update(const sim::DmxFrame& frame, std:
   bool sent = false;
   const bool dark = frame.panicked && target_.dark_in_panic;
   for (const sim::DmxUniverse& from : frame.universes) {
+    if (target_.protocol == Protocol::enttec && from.number != target_.universe) continue;
     Universe& to = universe(from.number);
     to.present = true;
     const std::array<std::uint8_t, sim::kDmxChannels>& values = dark ? from.dark : from.values;
@@ -75,7 +76,9 @@ std::optional<std::int64_t> LightStream::update(const sim::DmxFrame& frame, std:
 
 void LightStream::send(Universe& universe, const std::array<std::uint8_t, sim::kDmxChannels>& values, bool terminated) {
   system::Endpoint to = target_.to;
-  if (target_.protocol == Protocol::art_net) {
+  if (target_.protocol == Protocol::enttec) {
+    write_enttec({values.data(), universe.length}, packet_);
+  } else if (target_.protocol == Protocol::art_net) {
     universe.sequence = universe.sequence == 255 ? std::uint8_t{1} : static_cast<std::uint8_t>(universe.sequence + 1);
     write_art_dmx(universe.number, universe.sequence, {values.data(), universe.length}, packet_);
   } else {
