@@ -54,6 +54,17 @@ Vec3 target_of(engine::Engine& engine, const limber_image& image) {
   return image.target == nullptr ? engine.world().visuals().camera().target() : vec3_at(image.target);
 }
 
+Result<void> check_camera(engine::Engine& engine, const limber_image& image) {
+  if (!valid_point(image.position) || !valid_point(image.target))
+    return Error{"image: position and target must be finite and at most 1e6 m from the origin"};
+  if ((image.position != nullptr || image.target != nullptr) && eye_of(engine, image) == target_of(engine, image))
+    return Error{"image: position and target of the camera are the same point; move one of them"};
+  if (image.fovy != 0 && !(image.fovy >= kMinFovy && image.fovy <= kMaxFovy))
+    return Error{fmt::format("image: fovy must be {} to {} degrees, or 0 for that of the scene, got {}", kMinFovy,
+                             kMaxFovy, image.fovy)};
+  return {};
+}
+
 engine::CameraSettings camera_of(engine::Engine& engine, const engine::Snapshot& snapshot, const limber_image& image) {
   engine::CameraSettings camera = engine::camera_of(snapshot);
   if (image.fovy != 0) camera.fovy = image.fovy;
@@ -74,13 +85,7 @@ Result<void> check_image(engine::Engine& engine, const limber_image& image, std:
         fmt::format("image: width and height must be 1 to {}, got {} and {}", kMaxSide, image.width, image.height)};
   const std::size_t bytes = 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   if (size != bytes) return Error{fmt::format("the array of the image must have {} bytes, got {}", bytes, size)};
-  if (!valid_point(image.position) || !valid_point(image.target))
-    return Error{"image: position and target must be finite and at most 1e6 m from the origin"};
-  if ((image.position != nullptr || image.target != nullptr) && eye_of(engine, image) == target_of(engine, image))
-    return Error{"image: position and target of the camera are the same point; move one of them"};
-  if (image.fovy != 0 && !(image.fovy >= kMinFovy && image.fovy <= kMaxFovy))
-    return Error{fmt::format("image: fovy must be {} to {} degrees, or 0 for that of the scene, got {}", kMinFovy,
-                             kMaxFovy, image.fovy)};
+  if (Result<void> camera = check_camera(engine, image); !camera) return camera;
   int quality = 0;  // may be none of the enumeration
   static_assert(sizeof quality == sizeof image.quality);
   std::memcpy(&quality, &image.quality, sizeof quality);

@@ -16,7 +16,7 @@
 
 #include "app/program.h"
 #include "base/log/log.h"
-#include "base/system/serial_port.h"
+#include "base/system/devices/serial_port.h"
 #include "base/system/wait.h"
 #include "engine/show.h"
 #include "net/lighting/output.h"

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <utility>
 
-#include "base/system/serial_port.h"
+#include "base/system/devices/serial_port.h"
 #include "base/system/wait.h"
 
 namespace limber::lighting {

@@ -46,25 +46,32 @@ Result<ListenAddress> psn_address(const std::string& dialect) {
   return address;
 }
 
-Result<void> complete_mocap_setup(ScriptContext& c) {
-  MocapArguments& arguments = c.arguments.mocap;
-  sim::MocapSetup& setup = arguments.setup;
-  const bool psn = is_psn(arguments.dialect);
-  const bool stage = arguments.dialect == "vmc" || psn;  // left-handed, Y up
-  const bool y_up = stage || !arguments.file.empty();    // of BVH files, too
+// Sets the axes, for which each kind of source has its convention.
+Result<void> set_mocap_axes(MocapArguments& arguments) {
+  sim::MocapAxes& axes = arguments.setup.axes;
+  const bool stage = arguments.dialect == "vmc" || is_psn(arguments.dialect);  // left-handed, Y up
+  const bool y_up = stage || !arguments.file.empty();                          // of BVH files, too
   const Result<std::size_t> up_axis =
       choice_of(arguments.up.empty() ? (y_up ? "y" : "z") : arguments.up, "up", {"x", "y", "z"});
   if (!up_axis) return Error{up_axis.error()};
-  setup.axes.up = static_cast<sim::MocapAxes::Up>(*up_axis);
+  axes.up = static_cast<sim::MocapAxes::Up>(*up_axis);
   const Result<std::size_t> hand =
       choice_of(arguments.handed.empty() ? (stage ? "left" : "right") : arguments.handed, "handed", {"right", "left"});
   if (!hand) return Error{hand.error()};
-  setup.axes.left_handed = *hand == 1;
+  axes.left_handed = *hand == 1;
+  return {};
+}
+
+Result<void> complete_mocap_setup(ScriptContext& c) {
+  MocapArguments& arguments = c.arguments.mocap;
+  sim::MocapSetup& setup = arguments.setup;
+  if (Result<void> axes = set_mocap_axes(arguments); !axes) return axes;
   const Result<std::size_t> order =
       choice_of(arguments.quaternion.empty() ? "wxyz" : arguments.quaternion, "quaternion", {"wxyz", "xyzw"});
   if (!order) return Error{order.error()};
   if (!arguments.dialect.empty())
-    return sim::set_mocap_dialect(setup, psn ? std::string(kPsn) : arguments.dialect, arguments.dancer, *order == 0);
+    return sim::set_mocap_dialect(setup, is_psn(arguments.dialect) ? std::string(kPsn) : arguments.dialect,
+                                  arguments.dancer, *order == 0);
   if (arguments.file.empty()) return {};
   const Result<std::string> path = c.sources->find(c.files, arguments.file);
   if (!path) return Error{path.error()};
