@@ -15,6 +15,21 @@ std::string mocap_value_of(const std::string& lines, const std::string& expressi
   return fault.empty() ? fixture.host.printed.back() : first_line(fault);
 }
 
+TEST(MocapScripts, PosiStageNetOpensItsGroupBesideThePorts) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.run("sim:add_mocap('a', { source = 'psn' })"), "");
+  const ListenAddress group{"236.10.10.10", 56565, true};
+  EXPECT_EQ(fixture.host.plan.trackers, std::vector<ListenAddress>{group});
+  EXPECT_TRUE(fixture.host.plan.listen.empty());
+  const sim::MocapAxes axes = fixture.world.sensing().mocap().find("a")->setup()->axes;
+  EXPECT_EQ(axes, (sim::MocapAxes{sim::MocapAxes::Up::y, true, 1}));
+  ScriptFixture other;
+  ASSERT_EQ(other.run("sim:add_mocap('a', { source = 'psn:10.0.0.2:5000', up = 'z', handed = 'right' })"), "");
+  const ListenAddress address{"10.0.0.2", 5000, true};
+  EXPECT_EQ(other.host.plan.trackers, std::vector<ListenAddress>{address});
+  EXPECT_EQ(other.world.sensing().mocap().find("a")->setup()->axes, sim::MocapAxes{});
+}
+
 TEST(MocapScripts, HaveListsJointsAndSettings) {
   EXPECT_EQ(mocap_value_of("local a = sim:add_mocap('a', { source = 'osc', joints = { 'hips' }, fade = 2 })\n"
                            "local b = sim:add_mocap('b', { source = 'vmc' })\n"
