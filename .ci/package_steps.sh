@@ -1,7 +1,7 @@
 # shellcheck shell=bash disable=SC2154
 # The long part "package": builds packages for each release; .ci/package/inside.sh tests them in minimal systems.
 
-# built_for RELEASE --package|--tarball: builds it, here if this is that release, else in a root; prints the file name.
+# built_for RELEASE --package|--python-package|--tarball|--wheel: builds it, here if this is that release, else in a root; prints the file name.
 built_for() {
   local release=$1 what=$2 file log=build/check/package_$1$2.log
   if [ "$(os_field VERSION_CODENAME)" = "$release" ]; then
@@ -27,10 +27,12 @@ older_package() {
 
 # package_checks RELEASE TARBALL: runs all checks in a minimal root of that release and counts them.
 package_checks() {
-  local release=$1 tarball=$2 deb folder=build/check/package/$1 log=build/check/package_$1.log line
+  local release=$1 tarball=$2 deb python wheel folder=build/check/package/$1 log=build/check/package_$1.log line
   deb=$(built_for "$release" --package) || { fail "the package of $release was not built" "build/check/package_$release--package.log"; return; }
+  python=$(built_for "$release" --python-package) || { fail "the Python package of $release was not built" "build/check/package_$release--python-package.log"; return; }
+  wheel=$(built_for "$release" --wheel) || { fail "the wheel of $release was not built" "build/check/package_$release--wheel.log"; return; }
   rm -rf "$folder" && mkdir -p "$folder"
-  cp "$deb" "$tarball" .ci/package/inside.sh .ci/package/zsh_completion "$folder/"
+  cp "$deb" "$python" "$wheel" "$tarball" .ci/package/python_check.py .ci/package/inside.sh .ci/package/zsh_completion "$folder/"
   package_rows bare | cut -d' ' -f1 >"$folder/tools"
   older_package "$deb" "$folder/older.deb" && build/limber play --headless --fast --ticks 120 --hash --seed 3 \
     2>/dev/null | tail -n 1 >"$folder/expected" || { fail "the files for the checks in $release could not be made"; return; }
@@ -47,11 +49,11 @@ package_checks() {
   say "$release: $(grep -c '^ok ' "$log") checks of the packages passed, $(grep -c '^FAILED ' "$log") failed"
 }
 
-# --long package: the Debian packages of 12 and 13 and the tarball: lintian, minimal systems, upgrade, removal, man page, completion
+# --long package: the Debian packages of 12 and 13, the tarball and the wheels: lintian, minimal systems, upgrade, removal, man page, completion
 long_package() {
   local release tarball
   . .ci/package/package.sh
-  need_packages run package long
+  need_packages run package python long
   rm -rf build/check/package && mkdir -p build/check/package
   ./run --build-only >build/check/package_build.log 2>&1 || { fail "the build" build/check/package_build.log; return; }
   tarball=$(built_for bookworm --tarball) || { fail "the tarball was not built" build/check/package_bookworm--tarball.log; return; }

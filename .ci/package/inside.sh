@@ -1,6 +1,6 @@
 #!/bin/bash
 # Tests the packages in a minimal Debian. `./check --long package` calls it in the root, in a folder with
-# limber_*.deb, older.deb, limber-*.tar.gz, expected (the hash of the run below), tools (packages that the checks need)
+# limber_*.deb, python3-limber_*.deb, limber-*.whl, older.deb, limber-*.tar.gz, python_check.py, expected (the hash of the run below), tools (packages that the checks need)
 # and zsh_completion.
 # Prints "ok NAME" or "FAILED NAME" with the end of the output for each check.
 # shellcheck disable=SC2046,SC2086
@@ -69,9 +69,21 @@ check replays_the_take limber --replay "$HOME/my_show/evening.take" --headless -
 check draws_a_still draws limber
 check version_is_the_packages test "$(limber --version | cut -d' ' -f2)" = "$(dpkg-query -W -f '${Version}' limber | cut -d- -f1)"
 
+# ---- the Python package and the wheel; the wheel without any other package of ours
+hash_and_image() { PYTHONPATH=$1 HOME=/home/other python3 python_check.py "$2" "$(cat expected)"; }
+check wheel_needs install_debian python3-numpy python3-pip
+check wheel_installs pip install --no-index --no-deps --target /opt/wheel ./limber-*.whl
+check wheel_steps_and_draws hash_and_image /opt/wheel /opt/wheel
+check python_installs install_debian ./python3-limber_*.deb
+check python_steps_and_draws hash_and_image "" /usr/lib/python3/dist-packages/limber
+check python_has_its_version sh -c 'python3 -c "import limber; print(limber.__version__)" | grep -qx "$(dpkg-query -W -f "\${Version}" python3-limber | cut -d- -f1)"'
+check python_removes apt-get purge -y -q python3-limber
+check python_leaves_nothing test ! -e /usr/lib/python3/dist-packages/limber
+
 # ---- integration with desktops, shells, man pages
 check installs_tools install_debian $(cat tools)
 check lintian lintian --allow-root --fail-on error,warning "$deb"
+check lintian_python lintian --allow-root --fail-on error ./python3-limber_*.deb
 check desktop_file is_clean desktop-file-validate /usr/share/applications/limber.desktop
 # without a home page, see lintian-overrides; the appstreamcli of Debian 12 does not know that tag
 appstream_data() {

@@ -1,6 +1,7 @@
 # shellcheck shell=bash disable=SC2154,SC2086,SC2016
-# ./run --package and ./run --tarball: build a Debian package, and an archive that runs without installation, from
-# build/limber. Sourced by bash in the root, after a build.
+# ./run --package, --python-package, --tarball and --wheel: build Debian packages of the program and of the Python
+# package, an archive that runs without installation, and a wheel, from build. Sourced by bash in the root, after a
+# build.
 
 package_out=build/package
 package_maintainer='Limber contributors <limber@example.org>'
@@ -101,12 +102,13 @@ debian_changelog() {
   printf '\n -- %s  %s\n' "$package_maintainer" "$(LC_ALL=C date -R -u -d "@$(source_time)")"
 }
 
-# Prints the dependencies on libraries, as found by dpkg-shlibdeps.
+# library_dependencies FILE...: prints their dependencies on libraries, as found by dpkg-shlibdeps. -l FOLDER: one with
+# libraries of the package.
 library_dependencies() {
   local depends
   mkdir -p "$package_out/debian"
   printf 'Source: limber\n\nPackage: limber\nArchitecture: any\n' >"$package_out/debian/control"
-  depends=$(cd "$package_out" && dpkg-shlibdeps -O stage/usr/bin/limber 2>shlibdeps.log | sed -n 's/^shlibs:Depends=//p')
+  depends=$(cd "$package_out" && dpkg-shlibdeps -O "$@" 2>shlibdeps.log | sed -n 's/^shlibs:Depends=//p')
   case $depends in
     *libc6*) printf '%s' "$depends" ;;
     *) die 3 "dpkg-shlibdeps found no dependencies (its messages: $package_out/shlibdeps.log)." \
@@ -166,15 +168,93 @@ make_package() {
   rm -rf "$stage" && mkdir -p "$stage/DEBIAN"
   install_tree "$stage/usr"
   debian_documents "$stage" "$version"
-  depends=$(library_dependencies) || exit
+  depends=$(library_dependencies stage/usr/bin/limber) || exit
   debian_control "$version" "$stage" "$depends" >"$stage/DEBIAN/control"
+  build_debian "$stage" limber "$version"
+}
+
+# build_debian STAGE NAME VERSION: adds the checksums, and writes the package.
+build_debian() {
+  local stage=$1 file=$package_out/$2_$3_$(dpkg --print-architecture).deb
   (cd "$stage" && find usr -type f -print0 | LC_ALL=C sort -z | xargs -0 md5sum >DEBIAN/md5sums)
   find "$stage" -exec touch -h -d "@$(source_time)" {} +
-  file=$package_out/limber_${version}_$(dpkg --print-architecture).deb
   SOURCE_DATE_EPOCH=$(source_time) dpkg-deb --root-owner-group -Zxz --build "$stage" "$file" >/dev/null ||
     die 3 "dpkg-deb could not build $file." "fix the problem above and try again."
   say "built: $file"
   say "to install it: apt install ./$file"
+}
+
+# Builds the Python module, which a build without Python's headers has left out.
+build_python() {
+  mkdir -p "$package_out"
+  cmake -DLIMBER_PYTHON=ON build >"$package_out/python.log" 2>&1 &&
+    cmake --build build --target limber_python -j "$(jobs)" </dev/null >>"$package_out/python.log" 2>&1 ||
+    die 3 "the Python package could not be built (whole output: $package_out/python.log)." \
+      "apt-get install python3-dev python3-numpy pybind11-dev"
+}
+
+python_control() {
+  local minor
+  minor=$(/usr/bin/python3 -c 'import sys; print(sys.version_info[1])')
+  cat <<TEXT
+Package: python3-limber
+Source: limber
+Version: $1
+Architecture: $(dpkg --print-architecture)
+Maintainer: $package_maintainer
+Installed-Size: $(du -sk --apparent-size "$2/usr" | cut -f1)
+Depends: $3, limber (= $1), python3 (<< 3.$((minor + 1))), python3 (>= 3.$minor), python3-numpy
+Section: python
+Priority: optional
+Description: live simulator of actuated bodies, as a Python module
+ Limber simulates bodies that are built from URDF files or in Lua, moved by
+ motors and behaviors. With this module, Python programs step simulations,
+ read and set their properties as NumPy arrays, save and restore their state,
+ and draw images without a display.
+ .
+ Scenes are environments with Gymnasium's protocol, also many at once in
+ several processes.
+TEXT
+}
+
+make_python_package() {
+  local stage=$package_out/python_stage version depends file packages doc
+  for file in dpkg-deb dpkg-shlibdeps; do need_program $file dpkg-dev; done
+  build_python
+  version=$(package_version)-1~$(release_tag)
+  packages=$stage/usr/lib/python3/dist-packages doc=$stage/usr/share/doc/python3-limber
+  rm -rf "$stage" && mkdir -p "$stage/DEBIAN" "$packages" "$doc/examples"
+  umask 022
+  cmake --install build --component python --prefix "$packages" --strip >"$package_out/install.log" ||
+    die 3 "installing into $packages failed (whole output: $package_out/install.log)." "remove build/package and try again."
+  cp .ci/package/copyright "$doc/copyright"
+  cp python/examples/*.py "$doc/examples/"
+  debian_changelog "$version" | gzip -9n >"$doc/changelog.Debian.gz"
+  depends=$(library_dependencies -lpython_stage/usr/lib/python3/dist-packages/limber/lib \
+    python_stage/usr/lib/python3/dist-packages/limber/{_core.*.so,lib/liblimber.so.*.*}) || exit
+  python_control "$version" "$stage" "$depends" >"$stage/DEBIAN/control"
+  # Python compiles the modules after the installation, as Debian's other packages do
+  cat >"$stage/DEBIAN/postinst" <<'TEXT'
+#!/bin/sh
+set -e
+if [ "$1" = configure ] && command -v py3compile >/dev/null; then py3compile -p python3-limber; fi
+TEXT
+  cat >"$stage/DEBIAN/prerm" <<'TEXT'
+#!/bin/sh
+set -e
+if command -v py3clean >/dev/null; then py3clean -p python3-limber; fi
+TEXT
+  chmod 755 "$stage/DEBIAN/postinst" "$stage/DEBIAN/prerm"
+  build_debian "$stage" python3-limber "$version"
+}
+
+make_wheel() {
+  local file
+  build_python
+  file=$(SOURCE_DATE_EPOCH=$(source_time) /usr/bin/python3 .ci/package/wheel.py build "$package_out") ||
+    die 3 "the wheel could not be built." "fix the problem above and try again."
+  say "built: $file"
+  say "to install it: pip install $file"
 }
 
 # True for libraries of the system: the C and C++ library, and libraries of graphics drivers.

@@ -13,24 +13,16 @@ child process creates its own simulations. Subinterpreters are rejected.
 from __future__ import annotations
 
 import os
-import sys
 from typing import Callable, Optional, Union
 
 from . import _core
-from ._core import Property, SimError, State
+from ._core import Property, SimError, State, data_folder
+from .log import print_log
 
 __version__: str = _core.version
-__all__ = ["Box", "Env", "Property", "Sim", "SimError", "State", "VectorEnv", "__version__"]
+__all__ = ["Box", "Env", "Property", "Sim", "SimError", "State", "VectorEnv", "__version__", "data_folder"]
 
 Log = Callable[[str, str], None]
-
-
-def print_log(level: str, text: str) -> None:
-    """The default log: print() of scripts to standard output; warnings and errors to standard error."""
-    if level == "print":
-        print(text)
-    elif level != "info":
-        print(f"limber: {level}: {text}", file=sys.stderr)
 
 
 class Sim(_core.Sim):
@@ -40,7 +32,8 @@ class Sim(_core.Sim):
     seed: the random seed, 0 to 2^53; None: that of the scene.
     text: the scene's text instead of a file; `scene` then is its name, in the folder where it finds other files.
     threads: threads of each physics step; the result is the same for any number.
-    log: called with (level, text) for each log line; level is "info", "warning", "error" or "print". None: no log.
+    log: called with (level, text) for each log line; level is "info", "warning", "error" or "print". None: no log. The
+        default prints, with limits for lines that are repeated (limber.log).
     data: the folder with Limber's scripts/ and urdf/; None: that of the installation.
 
     Raises SimError if the scene has an error; the text has file and line.

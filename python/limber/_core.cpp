@@ -6,6 +6,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -143,6 +146,15 @@ py::object object_of(const limber_value& value) {
   }
 }
 
+using Point = std::array<double, 3>;
+
+limber_quality quality_of(const std::string& name) {
+  if (name == "high") return LIMBER_QUALITY_HIGH;
+  if (name == "medium") return LIMBER_QUALITY_MEDIUM;
+  if (name == "low") return LIMBER_QUALITY_LOW;
+  throw py::value_error("quality must be 'high', 'medium' or 'low', got '" + name + "'");
+}
+
 class Sim {
  public:
   Sim(const std::optional<std::string>& file, const std::optional<std::string>& text, std::optional<std::uint64_t> seed,
@@ -172,13 +184,25 @@ class Sim {
     });
   }
 
+  // Long runs are divided into slices, after which Python handles signals such as Ctrl+C.
   void step(std::uint64_t ticks) {
-    limber_status status = LIMBER_OK;
-    {
-      const py::gil_scoped_release release;
-      status = limber_step(sim_.get(), ticks);
+    std::uint64_t slice = 1;
+    for (std::uint64_t left = ticks; left > 0;) {
+      limber_status status = LIMBER_OK;
+      {
+        const py::gil_scoped_release release;
+        const auto begin = std::chrono::steady_clock::now();
+        do {
+          slice = std::min(slice, left);
+          status = limber_step(sim_.get(), slice);
+          left -= slice;
+          if (slice < kMaxSlice) slice *= 2;
+        } while (status == LIMBER_OK && left > 0 && std::chrono::steady_clock::now() - begin < kSignalInterval);
+        if (left > 0) slice = 1;
+      }
+      check(status);
+      if (left > 0 && PyErr_CheckSignals() != 0) throw py::error_already_set();
     }
-    check(status);
   }
   void reset(std::optional<std::uint64_t> seed) {
     limber_status status = LIMBER_OK;
@@ -245,12 +269,36 @@ class Sim {
     }
     return list;
   }
+  py::array_t<std::uint8_t> render(int width, int height, const std::optional<Point>& position,
+                                   const std::optional<Point>& target, double fovy, const std::string& quality) const {
+    limber_image image = LIMBER_IMAGE;
+    image.width = width;
+    image.height = height;
+    if (position) image.position = position->data();
+    if (target) image.target = target->data();
+    image.fovy = fovy;
+    image.quality = quality_of(quality);
+    if (width < 1 || height < 1) throw py::value_error("width and height must be at least 1");
+    py::array_t<std::uint8_t> pixels({height, width, 3});
+    std::uint8_t* const data = pixels.mutable_data();
+    const auto size = static_cast<std::size_t>(pixels.size());
+    limber_status status = LIMBER_OK;
+    {
+      const py::gil_scoped_release release;
+      status = limber_render(sim_.get(), &image, data, size);
+    }
+    check(status);
+    return pixels;
+  }
   std::uint64_t tick() const { return limber_tick(sim_.get()); }
   double time() const { return limber_time(sim_.get()); }
   double timestep() const { return limber_timestep(sim_.get()); }
   std::uint64_t faults() const { return limber_faults(sim_.get()); }
 
  private:
+  static constexpr std::chrono::milliseconds kSignalInterval{20};
+  static constexpr std::uint64_t kMaxSlice = 64;  // ticks between two readings of the clock
+
   // An exception of the function can't pass through the library, so Python reports it as ignored; Ctrl+C is raised
   // again after the call.
   static void log_line(void* context, limber_log_level level, const char* text) {
@@ -274,6 +322,8 @@ PYBIND11_MODULE(_core, module) {
   reject_subinterpreter();
   module.doc() = "The classes of the package limber that are written in C++.";
   module.attr("version") = limber_version(nullptr, nullptr);
+  module.def("data_folder", &limber_data_folder,
+             "The folder with Limber's scripts/ and urdf/, such as data_folder() + '/scripts/arms.lua'; '' if there is none.");
   py::register_exception<SimError>(module, "SimError", PyExc_RuntimeError).doc() =
       "The scene has an error, or an object doesn't belong to this simulation, process or run of the scene.";
   py::class_<State>(module, "State", "A state that Sim.state() has saved; Sim.restore() returns to it.");
@@ -294,7 +344,8 @@ PYBIND11_MODULE(_core, module) {
       .def(py::init<const std::optional<std::string>&, const std::optional<std::string>&, std::optional<std::uint64_t>,
                     const std::optional<std::string>&, int, py::object>())
       .def("step", &Sim::step, py::arg("ticks") = 1,
-           "Advances time by this number of ticks. Other Python threads run meanwhile.")
+           "Advances time by this number of ticks. Other Python threads run meanwhile. Ctrl+C and other signals end it "
+           "between two ticks, after which it can be continued.")
       .def("reset", &Sim::reset, py::arg("seed") = py::none(),
            "Runs the scene from its start, with this seed (0 to 2^53) or the same as before. Properties remain valid, "
            "states don't.")
@@ -309,6 +360,12 @@ PYBIND11_MODULE(_core, module) {
            "Returns and removes the messages from the simulation, as (address, arguments): answers, osc:send, "
            "contacts.")
       .def("contacts", &Sim::contacts, "The contact points of the last tick, of parts with report_contacts.")
+      .def("render", &Sim::render, py::arg("width") = 640, py::arg("height") = 480, py::kw_only(),
+           py::arg("position") = py::none(), py::arg("target") = py::none(), py::arg("fovy") = 0,
+           py::arg("quality") = "high",
+           "Draws the present state without a display and returns it as an array (height, width, 3) of uint8: red, "
+           "green, blue. position, target: of the camera, world, m; fovy: its field of view, degrees; without them, "
+           "those of the scene's camera. quality: 'high', 'medium' or 'low'. Raises SimError where OpenGL is missing.")
       .def_property_readonly("tick", &Sim::tick, "Number of ticks since the start.")
       .def_property_readonly("time", &Sim::time, "Simulated time, s.")
       .def_property_readonly("timestep", &Sim::timestep, "Length of a tick, s.")

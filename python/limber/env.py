@@ -58,13 +58,14 @@ class Env:
     reward: the reward of a step, from the environment; 0 without it.
     terminated: true if the episode has ended by itself, such as a fall.
     max_steps: the episode is truncated after this number of steps; 0: never.
+    render_mode: "rgb_array": render() returns an image; None: it returns None.
+    camera: arguments of Sim.render() for render(): width, height, position, target, fovy, quality.
 
     `sim`, `actions` and `observations` (lists of Property) may be used between steps. Subclasses may override
     `compute_reward`, `is_terminated`, `info` and `on_reset`. Random numbers of an environment: `np_random`.
     """
 
-    metadata: Dict[str, Any] = {"render_modes": []}
-    render_mode = None
+    metadata: Dict[str, Any] = {"render_modes": ["rgb_array"]}
     spec = None
 
     def __init__(
@@ -81,11 +82,17 @@ class Env:
         reward: Optional[Reward] = None,
         terminated: Optional[Test] = None,
         max_steps: int = 0,
+        render_mode: Optional[str] = None,
+        camera: Optional[Dict[str, Any]] = None,
         **options: Any,
     ) -> None:
         if ticks < 1:
             raise ValueError(f"ticks must be at least 1, got {ticks}")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ValueError(f"render_mode must be 'rgb_array' or None, got {render_mode!r}")
+        self.render_mode, self.camera = render_mode, dict(camera or {})
         self.sim = Sim(scene, seed, text=text, **options)
+        self.metadata = {**self.metadata, "render_fps": 1 / (self.sim.timestep * ticks)}
         self.actions = [self.sim.property(address) for address in actions]
         self.observations = [self.sim.property(address) for address in observations]
         for action in self.actions:
@@ -177,8 +184,9 @@ class Env:
         self._needs_reset = terminated or truncated
         return self.observe(), self.compute_reward(), terminated, truncated, self.info()
 
-    def render(self) -> None:
-        """There are no render modes: limber --render makes films and images."""
+    def render(self) -> Optional[np.ndarray]:
+        """With the render mode "rgb_array", an image (height, width, 3) of the present state."""
+        return self.sim.render(**self.camera) if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
         """Ends the environment."""

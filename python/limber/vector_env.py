@@ -5,15 +5,18 @@ from __future__ import annotations
 import ctypes
 import multiprocessing
 import os
+import signal
 import traceback
 from multiprocessing.connection import Connection
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, NoReturn, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from .env import Box, Env
 
 Make = Callable[[], Env]
+
+_JOIN_SECONDS = 5
 
 
 def _array(memory: Any, shape: Tuple[int, ...], dtype: type) -> np.ndarray:
@@ -69,7 +72,9 @@ def _work(pipe: Connection, make: Make, first: int, count: int, shared: _Shared)
             command, data = pipe.recv()
             if command == "close":
                 break
-            if command == "reset":
+            if command == "render":
+                infos = [env.render() for env in envs]
+            elif command == "reset":
                 seeds, options = data
                 infos = [_reset_one(env, first + i, seeds[i], options, shared) for i, env in enumerate(envs)]
             else:
@@ -84,6 +89,22 @@ def _work(pipe: Connection, make: Make, first: int, count: int, shared: _Shared)
             pipe.send(("error", traceback.format_exc()))
         except OSError:
             pass
+
+
+def _cause(process: Any) -> str:
+    """Why a process has ended."""
+    process.join(_JOIN_SECONDS)
+    code = process.exitcode
+    if code is None:
+        return "has closed its connection, but still runs"
+    if code >= 0:
+        return f"has exited with status {code}; its own messages are above"
+    try:
+        name = signal.Signals(-code).name
+    except ValueError:
+        name = f"signal {-code}"
+    hint = "; was memory short?" if name == "SIGKILL" else ""
+    return f"was ended by {name}{hint}"
 
 
 class VectorEnv:
@@ -135,24 +156,36 @@ class VectorEnv:
     def _rows(self, space: Box) -> Box:
         return Box(np.tile(space.low, (self.num_envs, 1)), np.tile(space.high, (self.num_envs, 1)))
 
-    def _collect(self) -> List[Dict[str, Any]]:
-        infos: List[Dict[str, Any]] = []
-        for pipe in self._pipes:
+    def _collect(self) -> List[Any]:
+        infos: List[Any] = []
+        for worker, pipe in enumerate(self._pipes):
             try:
                 kind, data = pipe.recv()
-            except EOFError:
-                kind, data = "error", "a process of the VectorEnv has ended"
+            except (EOFError, OSError):
+                self._fail(worker, _cause(self._processes[worker]))
             if kind == "error":
-                self.close()
-                raise RuntimeError(data)
+                self._fail(worker, f"failed:\n{data}")
             infos += data or []
         return infos
 
-    def _request(self, requests: Sequence[Tuple[str, Any]]) -> List[Dict[str, Any]]:
+    def _fail(self, worker: int, why: str) -> NoReturn:
+        """Raises the error of a worker, and ends all of them: the environments don't fit together any more."""
+        begin, end = self._ranges[worker]
+        which = f"environment {begin}" if end == begin + 1 else f"environments {begin} to {end - 1}"
+        pid = self._processes[worker].pid
+        self.close()
+        raise RuntimeError(f"worker {worker} of the VectorEnv ({which}, process {pid}) {why}")
+
+    def _request(self, requests: Sequence[Tuple[str, Any]]) -> List[Any]:
         if not self._pipes:
             raise RuntimeError("the VectorEnv is closed")
-        for pipe, request in zip(self._pipes, requests):
-            pipe.send(request)
+        for worker, (pipe, request) in enumerate(zip(self._pipes, requests)):
+            try:
+                pipe.send(request)
+            except OSError:
+                # the error that the worker has reported before it ended, or else its exit
+                if not pipe.poll():
+                    self._fail(worker, _cause(self._processes[worker]))
         return self._collect()
 
     def reset(
@@ -186,6 +219,10 @@ class VectorEnv:
             infos,
         )
 
+    def render(self) -> Tuple[Optional[np.ndarray], ...]:
+        """The image of each environment, by its render mode."""
+        return tuple(self._request([("render", None)] * len(self._pipes)))
+
     def close(self) -> None:
         """Ends the processes."""
         for pipe in self._pipes:
@@ -195,7 +232,7 @@ class VectorEnv:
                 pass
             pipe.close()
         for process in self._processes:
-            process.join(5)
+            process.join(_JOIN_SECONDS)
             if process.is_alive():
                 process.terminate()
         self._pipes, self._processes = [], []

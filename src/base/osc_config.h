@@ -38,6 +38,7 @@ struct StreamTarget {
 struct ListenAddress {
   std::string address = "127.0.0.1";
   std::uint16_t port = 9003;
+  bool optional = false;  ///< If it can't be opened, this is a warning, and opening it is tried again.
 
   bool operator==(const ListenAddress&) const = default;
 };
@@ -46,6 +47,7 @@ struct ListenAddress {
 struct OscConfig {
   std::vector<ListenAddress> listen;
   std::vector<StreamTarget> targets;
+  std::vector<ListenAddress> trackers = {};  ///< Inputs of motion capture, in addition to `listen`.
 
   bool operator==(const OscConfig&) const = default;
 };

@@ -160,6 +160,14 @@ const char* limber_version(int* major, int* minor) {
   return text.c_str();
 }
 
+const char* limber_data_folder(void) {
+  try {
+    return limber::lib::data_folder().c_str();
+  } catch (const std::exception&) {
+    return "";
+  }
+}
+
 const char* limber_last_error(void) { return limber::lib::error_text().c_str(); }
 
 limber_status limber_create(const limber_options* options, limber_sim** out) {
@@ -342,5 +350,15 @@ void limber_discard(limber_state* state) {
     simulation.engine().saved_states().discard(state->state);
     simulation.states().remove_if([&](const limber_state& one) { return &one == state; });
     return LIMBER_OK;
+  });
+}
+
+limber_status limber_render(limber_sim* sim, const limber_image* image, uint8_t* pixels, size_t size) {
+  if (image == nullptr || pixels == nullptr) return fail(LIMBER_INVALID_ARGUMENT, "image or pixels is null");
+  return with(sim, [&](Simulation& simulation) {
+    if (const limber::Result<void> valid = limber::lib::check_image(simulation.engine(), *image, size); !valid)
+      return fail(LIMBER_INVALID_ARGUMENT, valid.error());
+    const limber::Result<void> drawn = simulation.view().draw(simulation.engine(), *image, pixels);
+    return drawn ? LIMBER_OK : fail(LIMBER_NO_GRAPHICS, drawn.error());
   });
 }

@@ -40,7 +40,7 @@ extern "C" {
 /* Version of this interface. A library with the same major number and a higher minor number has everything that is
  * declared here. */
 #define LIMBER_INTERFACE_MAJOR 1
-#define LIMBER_INTERFACE_MINOR 0
+#define LIMBER_INTERFACE_MINOR 1
 
 typedef enum limber_status {
   LIMBER_OK = 0,
@@ -52,7 +52,8 @@ typedef enum limber_status {
   LIMBER_BUSY = 6,             /* another thread uses the simulation, or a log callback calls the library */
   LIMBER_WRONG_PROCESS = 7,    /* the simulation belongs to the process that forked this one */
   LIMBER_NO_MEMORY = 8,        /* not enough memory or threads */
-  LIMBER_NONE = 9              /* there is no event */
+  LIMBER_NONE = 9,             /* there is no event */
+  LIMBER_NO_GRAPHICS = 10      /* images can't be drawn: OpenGL or a driver is missing; the text has the fix (1.1) */
 } limber_status;
 
 typedef struct limber_sim limber_sim;           /* a simulation */
@@ -87,6 +88,9 @@ typedef struct limber_options {
 
 /* Returns the version of the library as text: "0.4.0". Its interface is (*major, *minor); either may be null. */
 LIMBER_API const char* limber_version(int* major, int* minor);
+
+/* Returns the folder with the installed scripts/ and urdf/, which scenes use; "" if there is none (since 1.1). */
+LIMBER_API const char* limber_data_folder(void);
 
 /* Returns the text of the last error on this thread; valid until its next call that fails. */
 LIMBER_API const char* limber_last_error(void);
@@ -205,6 +209,34 @@ LIMBER_API limber_status limber_save(limber_sim* sim, limber_state** out);
 LIMBER_API limber_status limber_restore(limber_sim* sim, const limber_state* state);
 /* Frees a state. Null is ignored. */
 LIMBER_API void limber_discard(limber_state* state);
+
+/* ---- images (since 1.1) */
+
+typedef enum limber_quality {
+  LIMBER_QUALITY_HIGH = 0, /* as in films */
+  LIMBER_QUALITY_MEDIUM = 1,
+  LIMBER_QUALITY_LOW = 2 /* the fastest: no shadows, hard edges */
+} limber_quality;
+
+/* An image to draw. Begin with LIMBER_IMAGE, which sets the size of the structure and the image, 640 x 480. */
+typedef struct limber_image {
+  size_t size;            /* sizeof(limber_image) */
+  int width, height;      /* pixels */
+  const double* position; /* of the camera, 3 numbers: world, m; null: that of the scene's camera */
+  const double* target;   /* the point that it looks at, upright; null: that of the scene's camera */
+  double fovy;            /* vertical field of view, degrees; 0: that of the scene's camera */
+  limber_quality quality;
+} limber_image;
+
+#define LIMBER_IMAGE \
+  { sizeof(limber_image), 640, 480, NULL, NULL, 0, LIMBER_QUALITY_HIGH }
+
+/* Draws the present state into an array of width * height * 3 bytes (`size`): rows from top to bottom, red, green, blue
+ * (sRGB). It needs no display and changes no state. The first image loads OpenGL (libEGL, and a driver, such as Mesa's
+ * for software) and creates a context of the simulation; a process that draws none loads none. The context that was
+ * current on the thread is current afterwards. In a child of a process that has drawn images it fails, because drivers
+ * have threads. */
+LIMBER_API limber_status limber_render(limber_sim* sim, const limber_image* image, uint8_t* pixels, size_t size);
 
 #ifdef __cplusplus
 }

@@ -21,12 +21,14 @@ namespace fs = std::filesystem;
 
 constexpr CommandOrigin kOrigin{CommandSource::command_line};
 
-// Returns the folder with the installed data: that of the source tree or the installation that contains the library.
-std::string find_data() {
+// From lib/ of a Python package in dist-packages up to /usr.
+constexpr int kMaxLevels = 6;
+
+std::string search_data() {
   std::error_code error;
   std::vector<fs::path> candidates;
-  fs::path folder = system::library_path(reinterpret_cast<const void*>(&find_data));
-  for (int level = 0; level < 4 && folder.has_relative_path(); level++) {
+  fs::path folder = system::library_path(reinterpret_cast<const void*>(&search_data));
+  for (int level = 0; level < kMaxLevels && folder.has_relative_path(); level++) {
     folder = folder.parent_path();
     candidates.push_back(folder);
     candidates.push_back(folder / "share/limber");
@@ -47,7 +49,7 @@ engine::EngineOptions engine_options(const limber_options& options) {
   std::error_code error;
   engine.scene = fs::absolute(name, error).lexically_normal().string();
   if (options.text != nullptr) engine.scene_text = options.text;
-  engine.scene_options.data_dir = options.data == nullptr ? find_data() : options.data;
+  engine.scene_options.data_dir = options.data == nullptr ? data_folder() : options.data;
   if (options.seed != nullptr) engine.scene_options.seed = *options.seed;
   engine.threads = std::max(options.threads, 1);
   return engine;
@@ -72,6 +74,11 @@ void copy_vector(const Vec3& from, double* to) {
 }
 
 }  // namespace
+
+const std::string& data_folder() {
+  static const std::string folder = search_data();
+  return folder;
+}
 
 Result<void> check_options(const limber_options& options) {
   if (options.file == nullptr && options.text == nullptr) return Error{"options: set `file` or `text`"};

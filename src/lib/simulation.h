@@ -15,6 +15,7 @@
 #include "engine/engine.h"
 #include "lib/limber.h"
 #include "lib/property_handle.h"
+#include "lib/view.h"
 
 /// A saved state, in the list of its simulation.
 struct limber_state {
@@ -60,6 +61,7 @@ class Simulation {
   ProgramLog& log() { return log_; }
   std::list<limber_state>& states() { return states_; }
   std::list<limber_property>& properties() { return properties_; }
+  View& view() { return view_; }
 
   /// Marks the simulation as used by this thread. False: another call is running. [any]
   bool try_enter() { return !busy_.exchange(true, std::memory_order_acquire); }
@@ -75,6 +77,7 @@ class Simulation {
   engine::Engine engine_;
   std::list<limber_state> states_;
   std::list<limber_property> properties_;
+  View view_;
   std::vector<engine::Outgoing> outgoing_;  // scratch
   std::deque<Message> events_;
   Message event_message_;  // of the last event
@@ -83,6 +86,10 @@ class Simulation {
   std::atomic<bool> busy_{false};
   unsigned forks_;
 };
+
+/// Returns the folder with the installed data: that of the source tree or the installation that contains the library.
+/// Empty: there is none. [any]
+const std::string& data_folder();
 
 /// Error: an option is out of its range, or there is neither a file nor a text.
 Result<void> check_options(const limber_options& options);

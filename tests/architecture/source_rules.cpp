@@ -38,7 +38,8 @@ constexpr std::array kModules{
     Module{"ui/panel", "properties model engine"},
     // motion files, without access to the scene
     Module{"export", ""},
-    Module{"lib", "properties model sim script engine"},
+    // for other programs, like app for users: it connects the modules that its interface offers
+    Module{"lib", "properties model sim script engine ui/render"},
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
     Module{"app",

@@ -102,6 +102,38 @@ TEST(LimberPackage, PythonPackageKeepsItsRules) {
     EXPECT_EQ(result.code, 0) << result.out << result.err;
   }
 }
+
+// As after pip install --target, but also where pip is missing.
+TEST(LimberPackage, WheelWorksWithoutTheBuildFolder) {
+  const TempFolder folder;
+  const std::string site = folder.path() + "/site";
+  std::string wheel = succeed(
+      {LIMBER_PYTHON, LIMBER_SOURCE_DIR "/.ci/package/wheel.py", LIMBER_BUILD, folder.path() + "/wheels"});
+  ASSERT_TRUE(wheel.ends_with("-linux_x86_64.whl\n") || wheel.ends_with("-linux_aarch64.whl\n")) << wheel;
+  wheel.pop_back();
+  succeed({LIMBER_PYTHON, "-m", "zipfile", "-e", wheel, site});
+  const std::string hash =
+      succeed({LIMBER_PROGRAM, "scripts/arms.lua", "--fast", "--hash", "--ticks", "120", "--seed", "3"});
+  EXPECT_EQ(succeed({"env", "-C", folder.path(), "PYTHONPATH=" + site, "PYTHONDONTWRITEBYTECODE=1", LIMBER_PYTHON,
+                     "-W", "error", LIMBER_SOURCE_DIR "/.ci/package/python_check.py", site, hash}),
+            "ok\n");
+  // every file has its hash in RECORD, and none is missing there
+  succeed({LIMBER_PYTHON, "-c", R"(
+import base64, csv, hashlib, io, sys, zipfile
+wheel = zipfile.ZipFile(sys.argv[1])
+record = next(name for name in wheel.namelist() if name.endswith(".dist-info/RECORD"))
+rows = {row[0]: row for row in csv.reader(io.StringIO(wheel.read(record).decode()))}
+assert sorted(rows) == sorted(wheel.namelist())
+for name, digest, size in rows.values():
+    if name == record: continue
+    data = wheel.read(name)
+    expected = "sha256=" + base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+    assert (digest, int(size)) == (expected, len(data)), name
+licenses = [name for name in rows if "/licenses/" in name]
+assert len(licenses) > len([name for name in rows if name.startswith("limber/lib/")]), licenses
+)",
+           wheel});
+}
 #endif
 
 }  // namespace

@@ -1,9 +1,12 @@
 """Tests of the Python package: values, states, the rules of Gymnasium's protocol, processes, threads."""
 
+import contextlib
 import gc
+import io
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import threading
 import unittest
@@ -11,6 +14,7 @@ import unittest
 import numpy as np
 
 import limber
+from limber.log import PrintLog
 
 ARM = """
 local arm = sim:add_body("arm")
@@ -24,7 +28,7 @@ sim:on_step(function() arm:part("lower"):apply_force(vec3(math.random() - 0.5, 0
 """
 
 
-def make_env():
+def make_env(**options):
     return limber.Env(
         text=ARM,
         actions=["/physics/body/arm/motor/*/target"],
@@ -34,7 +38,22 @@ def make_env():
         ticks=2,
         max_steps=20,
         reward=lambda env: env.observations[1].values[0, 2],
+        **options,
     )
+
+
+def make_quitting_env():
+    class Quitting(limber.Env):
+        def is_terminated(self):
+            os._exit(7)
+
+    env = make_env()
+    env.__class__ = Quitting
+    return env
+
+
+def make_rendering_env():
+    return make_env(render_mode="rgb_array", camera={"width": 32, "height": 24, "quality": "low"})
 
 
 def child_hash(sim, queue):
@@ -46,6 +65,15 @@ def child_hash(sim, queue):
         own = limber.Sim(text=ARM, seed=3)
         own.step(50)
         queue.put(own.hash())
+
+
+def child_render(queue):
+    """Runs in a forked child of a process that has drawn images."""
+    try:
+        limber.Sim(text=ARM).render(32, 32)
+        queue.put("not rejected")
+    except limber.SimError as error:
+        queue.put(str(error))
 
 
 class SimTest(unittest.TestCase):
@@ -125,6 +153,114 @@ class SimTest(unittest.TestCase):
             limber.Sim(text="print('hello')", log=interrupt)
             for _ in range(1000):
                 pass
+
+    def test_render(self):
+        scene = ARM + """
+            visuals.look.floor = false
+            visuals.background = vec3(0, 0, 0)
+            visuals.camera:look_at(vec3(0, -4, 1.1), vec3(0, 0, 1.1))"""
+        sim = limber.Sim(text=scene, seed=1)
+        before = sim.hash()
+        image = sim.render(160, 120, quality="low")
+        self.assertEqual((image.shape, image.dtype), ((120, 160, 3), np.uint8))
+        self.assertEqual(sim.hash(), before)
+        # the arm is a vertical bar in the middle; from above it is a spot
+        brightness = image.sum(axis=2).astype(int)
+        self.assertGreater(brightness[30:90, 78:82].mean(), 3 * brightness[30:90, 20:60].mean())
+        above = sim.render(160, 120, position=(0.01, 0, 6), target=(0, 0, 1), quality="low").sum(axis=2)
+        self.assertGreater(above[60, 80], 3 * above[20:40, 78:82].mean())
+        np.testing.assert_array_equal(sim.render(160, 120, quality="low"), image)
+        for arguments in ({"width": 0}, {"quality": "best"}, {"position": (np.nan, 0, 0)}, {"fovy": 180}):
+            with self.assertRaises(ValueError):
+                sim.render(**arguments)
+
+    def test_graphics_are_loaded_with_the_first_image(self):
+        code = """
+import limber
+sim = limber.Sim(text="local a = 1")
+sim.step(10)
+loaded = lambda: any(name in open("/proc/self/maps").read() for name in ("libEGL", "libGL", "dri"))
+assert not loaded()
+try:
+    sim.render(64, 48)
+    assert loaded()
+except limber.SimError as error:
+    print(error)
+"""
+        for variables, text in (({}, ""), ({"__EGL_VENDOR_LIBRARY_DIRS": "/nowhere"}, "no OpenGL driver was found")):
+            result = subprocess.run(
+                [sys.executable, "-c", code], env={**os.environ, **variables}, capture_output=True, text=True
+            )
+            self.assertEqual((result.returncode, result.stderr), (0, ""))
+            self.assertIn(text, result.stdout)
+            self.assertEqual(bool(text), bool(result.stdout))
+
+    def test_render_after_a_fork(self):
+        sim = limber.Sim(text=ARM)
+        sim.render(32, 32, quality="low")
+        context = multiprocessing.get_context("fork")
+        queue = context.Queue()
+        child = context.Process(target=child_render, args=(queue,))
+        child.start()
+        self.assertIn("forked", queue.get(timeout=120))
+        child.join()
+
+    def test_long_steps_are_interrupted(self):
+        def interrupt(level, line):
+            os.kill(os.getpid(), signal.SIGINT)
+
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # in case that it was ignored at the start
+        text = ARM + "sim:on_step(function() if sim.tick == 100 then print('now') end end)"
+        sim = limber.Sim(text=text, seed=1, log=interrupt)
+        with self.assertRaises(KeyboardInterrupt):
+            sim.step(10**9)
+        ticks = sim.tick
+        self.assertGreaterEqual(ticks, 100)
+        self.assertLess(ticks, 10**6)
+        sim.step(5)
+        whole = limber.Sim(text=text, seed=1, log=None)
+        whole.step(ticks + 5)
+        self.assertEqual((sim.tick, sim.hash()), (ticks + 5, whole.hash()))
+
+    def test_repeated_lines_are_limited(self):
+        now = [0.0]
+        log = PrintLog(lambda: now[0])
+        out, err = io.StringIO(), io.StringIO()
+
+        def lines(stream):
+            text = stream.getvalue()
+            stream.truncate(0)
+            stream.seek(0)
+            return text.splitlines()
+
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            for i in range(100):
+                log("warning", f"arm.lua:{i}: 'part_1' has {i}.5 m/s")
+                log("error", "another source")
+            written = lines(err)
+            self.assertEqual(len(written), 20)
+            self.assertEqual(written[0], "limber: warning: arm.lua:0: 'part_1' has 0.5 m/s")
+            now[0] = 60
+            log("warning", "arm.lua:3: 'part_1' has 1 m/s")
+            log("warning", "arm.lua:3: 'part_2' has 1 m/s")  # another source
+            self.assertEqual(
+                lines(err),
+                [
+                    "limber: warning: arm.lua:3: 'part_1' has 1 m/s (and 90 more since the last one)",
+                    "limber: warning: arm.lua:3: 'part_2' has 1 m/s",
+                ],
+            )
+            for i in range(3000):
+                log("print", str(i))
+            self.assertEqual(lines(out), [str(i) for i in range(2000)])
+            now[0] = 60.5
+            for i in range(200):
+                log("print", "later")
+            self.assertEqual(lines(out), ["later"] * 100)
+            self.assertEqual(lines(err), ["limber: 1000 lines of print() were dropped"])
+            for i in range(1000):
+                log("warning", f"source {chr(0x4E00 + i)}")
+            self.assertLessEqual(len(log._sources), PrintLog.SOURCES)
 
     def test_objects_outlive_the_variable(self):
         sim = limber.Sim(text=ARM)
@@ -228,6 +364,21 @@ class EnvTest(unittest.TestCase):
         without_seed, _ = env.reset()
         np.testing.assert_array_equal(without_seed, first)
 
+    def test_render_modes(self):
+        self.assertIsNone(make_env().render())
+        camera = {"width": 64, "height": 48, "quality": "low"}
+        env = make_env(render_mode="rgb_array", camera=camera)
+        self.assertEqual(env.metadata["render_modes"], ["rgb_array"])
+        self.assertAlmostEqual(env.metadata["render_fps"], 1 / (env.sim.timestep * 2))
+        env.reset(seed=1)
+        first = env.render()
+        self.assertEqual((first.shape, first.dtype), ((48, 64, 3), np.uint8))
+        for _ in range(10):
+            env.step(env.action_space.high)
+        self.assertGreater(np.abs(env.render().astype(int) - first).max(), 50)
+        with self.assertRaisesRegex(ValueError, "rgb_array"):
+            make_env(render_mode="human")
+
     def test_vector_env_is_independent_of_processes(self):
         results = []
         for processes in (1, 2):
@@ -246,8 +397,29 @@ class EnvTest(unittest.TestCase):
     def test_errors_of_workers_are_raised(self):
         with limber.VectorEnv(make_env, 2, 2) as envs:
             envs.reset(seed=1)
-            with self.assertRaisesRegex(RuntimeError, "must be finite|finite|NaN"):
+            with self.assertRaisesRegex(RuntimeError, r"worker 0 .*environment 0, process \d+\) failed:(.|\n)*finite"):
                 envs.step(np.full((2, 2), np.nan))
+            with self.assertRaisesRegex(RuntimeError, "closed"):
+                envs.step(np.zeros((2, 2)))
+
+    def test_workers_that_end_are_named(self):
+        with limber.VectorEnv(make_env, 3, 2) as envs:
+            envs.reset(seed=1)
+            worker = envs._processes[1]
+            os.kill(worker.pid, signal.SIGKILL)
+            worker.join()
+            with self.assertRaisesRegex(RuntimeError, rf"worker 1 .*environments 1 to 2, process {worker.pid}.*SIGKILL"):
+                envs.step(np.zeros((3, 2)))
+        with limber.VectorEnv(make_quitting_env, 1, 1) as envs:
+            envs.reset(seed=1)
+            with self.assertRaisesRegex(RuntimeError, "worker 0 .*exited with status 7"):
+                envs.step(np.zeros((1, 2)))
+
+    def test_vector_env_renders(self):
+        with limber.VectorEnv(make_rendering_env, 2, 1) as envs:
+            envs.reset(seed=1)
+            images = envs.render()
+            self.assertEqual([image.shape for image in images], [(24, 32, 3)] * 2)
 
 
 if __name__ == "__main__":

@@ -64,6 +64,15 @@ TEST(LightingPackets, SacnSyncHasTheSpecifiedBytes) {
   EXPECT_EQ(sacn_multicast(0x0203), 0xefff0203U) << "239.255.2.3";
 }
 
+// "Output Only Send DMX Packet Request" of Enttec's API: label 6, length with the start code, 25 to 513 bytes.
+TEST(LightingPackets, EnttecHasAtLeast24Values) {
+  std::string packet;
+  write_enttec(std::vector<std::uint8_t>{1, 2, 3}, packet);
+  EXPECT_EQ(packet, text_of_bytes({0x7e, 6, 25, 0, 0, 1, 2, 3}) + std::string(21, '\0') + text_of_bytes({0xe7}));
+  write_enttec(std::vector<std::uint8_t>(512, 9), packet);
+  EXPECT_EQ(packet, text_of_bytes({0x7e, 6, 0x01, 0x02, 0}) + std::string(512, '\x09') + text_of_bytes({0xe7}));
+}
+
 TEST(LightingOptions, AreParsedAndDescribed) {
   const auto text = [](const char* option) {
     const auto targets = parse_lights_out(option);
@@ -75,6 +84,8 @@ TEST(LightingOptions, AreParsedAndDescribed) {
             "sACN 10.0.0.7:5568, priority 120, at most 30 Hz, sync universe 9");
   EXPECT_EQ(text("artnet"), "Art-Net 255.255.255.255:6454, at most 44 Hz");
   EXPECT_EQ(text("artnet:2.0.0.5:7000"), "Art-Net 2.0.0.5:7000, at most 44 Hz");
+  EXPECT_EQ(text("enttec:/dev/serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0,universe=3,rate=30"),
+            "Enttec DMX USB Pro /dev/serial/by-path/pci-0000:00:14.0-usb-0:2:1.0-port0, universe 3, at most 30 Hz");
   const auto settings = parse_lights_out("sacn,exit=hold,panic=blackout,name=Left desk,interface=10.0.0.2");
   ASSERT_TRUE(settings.ok());
   EXPECT_FALSE(settings->front().dark_at_end);
@@ -92,6 +103,12 @@ TEST(LightingOptions, ErrorsNameTheSettingAndTheFix) {
   EXPECT_EQ(fault("artnet:desk"), "--lights-out 'artnet:desk': 'desk' is not an IPv4 address");
   EXPECT_EQ(fault("artnet:1.2.3.4:0"), "--lights-out 'artnet:1.2.3.4:0': '0' is not a port");
   EXPECT_EQ(fault("artnet,priority=5"), "--lights-out 'artnet,priority=5': priority is a setting of sacn only");
+  EXPECT_EQ(fault("enttec"), "--lights-out 'enttec': the device is missing, such as enttec:/dev/ttyUSB0");
+  EXPECT_EQ(fault("enttec:/dev/a,interface=10.0.0.1"),
+            "--lights-out 'enttec:/dev/a,interface=10.0.0.1': interface is no setting of enttec");
+  EXPECT_EQ(fault("sacn,universe=2"), "--lights-out 'sacn,universe=2': universe is a setting of enttec only");
+  EXPECT_EQ(fault("enttec:/dev/a,universe=0"),
+            "--lights-out 'enttec:/dev/a,universe=0': universe must be a universe from 1 to 63999, got '0'");
   EXPECT_EQ(fault("sacn,priority=201"),
             "--lights-out 'sacn,priority=201': priority must be a whole number from 0 to 200, got '201'");
   EXPECT_EQ(fault("sacn,rate=0"), "--lights-out 'sacn,rate=0': rate must be a number from 1 to 1000, got '0'");

@@ -124,6 +124,18 @@ TEST(OscConfigs, CommandLineOverridesSceneOverridesDefault) {
   EXPECT_EQ(both.targets, *line.out);
 }
 
+TEST(OscConfigs, TrackersAreAddedUnlessInputIsOff) {
+  OscConfig scene;
+  scene.trackers = {{"236.10.10.10", 56565, true}, {"236.10.10.10", 56565, true}};
+  const std::vector<ListenAddress> added{{"127.0.0.1", 9003}, {"236.10.10.10", 56565, true}};
+  EXPECT_EQ(effective_config({}, &scene).listen, added);
+  OscOptions line;
+  line.in = *parse_osc_in("9003");
+  EXPECT_EQ(effective_config(line, &scene).listen, added);
+  line.in = *parse_osc_in("off");
+  EXPECT_TRUE(effective_config(line, &scene).listen.empty());
+}
+
 TEST(OscConfigs, FormatsTarget) {
   EXPECT_EQ(target_text({}), "127.0.0.1:9005 (pos+rot+relrot at 60 Hz)");
   EXPECT_EQ(target_text(parse_osc_out("h:7,rate=30,bundle=off,streams=none,bodies=a*,errors=on")->at(0)),

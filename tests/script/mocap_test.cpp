@@ -15,6 +15,21 @@ std::string mocap_value_of(const std::string& lines, const std::string& expressi
   return fault.empty() ? fixture.host.printed.back() : first_line(fault);
 }
 
+TEST(MocapScripts, PosiStageNetOpensItsGroupBesideThePorts) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.run("sim:add_mocap('a', { source = 'psn' })"), "");
+  const ListenAddress group{"236.10.10.10", 56565, true};
+  EXPECT_EQ(fixture.host.plan.trackers, std::vector<ListenAddress>{group});
+  EXPECT_TRUE(fixture.host.plan.listen.empty());
+  const sim::MocapAxes axes = fixture.world.sensing().mocap().find("a")->setup()->axes;
+  EXPECT_EQ(axes, (sim::MocapAxes{sim::MocapAxes::Up::y, true, 1}));
+  ScriptFixture other;
+  ASSERT_EQ(other.run("sim:add_mocap('a', { source = 'psn:10.0.0.2:5000', up = 'z', handed = 'right' })"), "");
+  const ListenAddress address{"10.0.0.2", 5000, true};
+  EXPECT_EQ(other.host.plan.trackers, std::vector<ListenAddress>{address});
+  EXPECT_EQ(other.world.sensing().mocap().find("a")->setup()->axes, sim::MocapAxes{});
+}
+
 TEST(MocapScripts, HaveListsJointsAndSettings) {
   EXPECT_EQ(mocap_value_of("local a = sim:add_mocap('a', { source = 'osc', joints = { 'hips' }, fade = 2 })\n"
                            "local b = sim:add_mocap('b', { source = 'vmc' })\n"
@@ -44,7 +59,7 @@ TEST(MocapScripts, ErrorsNameTheArgument) {
     return text.substr(std::min(place.size(), text.size()));
   };
   EXPECT_EQ(error_of("1"), "add_mocap takes a table such as { source = \"dancer.bvh\" }, not 1");
-  EXPECT_EQ(error_of("{}"), "add_mocap: source (a .bvh file, 'osc' or 'vmc') takes text, not nothing");
+  EXPECT_EQ(error_of("{}"), "add_mocap: source (a .bvh file, 'osc', 'psn' or 'vmc') takes text, not nothing");
   EXPECT_EQ(error_of("{ source = 'osc', up = 'w' }").substr(0, 30), "mocap 'a': up has no value 'w'");
   EXPECT_EQ(error_of("{ source = 'osc', bones = { 1 } }"), "add_mocap: bone 1 is a list { parent, child }, not 1");
   EXPECT_EQ(error_of("{ source = 'osc', bones = { { 'a', 'b', -1 } } }"),
@@ -54,6 +69,12 @@ TEST(MocapScripts, ErrorsNameTheArgument) {
   EXPECT_EQ(error_of("{ source = 'vmc', dancer = 1 }"), "add_mocap: VMC has no dancer; give each its own port");
   EXPECT_EQ(error_of("{ source = 'vmc', messages = { ['/a'] = 'x y z' } }"),
             "add_mocap: VMC has messages of its own; remove source or messages");
+  EXPECT_EQ(error_of("{ source = 'psn', dancer = 1 }"),
+            "add_mocap: PosiStageNet has no dancer; its trackers are the joints");
+  for (const char* address : {"psn:", "psn:236.10.10.10", "psn:236.10.10:56565", "psn:236.10.10.10:0"})
+    EXPECT_EQ(
+        error_of(fmt::format("{{ source = '{}' }}", address).c_str()),
+        fmt::format("mocap 'a': source '{}' must be psn or psn:ADDR:PORT, such as psn:236.10.10.10:56565", address));
   EXPECT_EQ(error_of("{ messages = { ['/a'] = 'x y z' }, dancer = 1 }"),
             "add_mocap: dancer has no effect on messages; remove it, and write it in their addresses");
   EXPECT_EQ(error_of("{ source = 'osc', joints = { 'a', 'a' } }"),

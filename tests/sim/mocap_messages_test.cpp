@@ -111,7 +111,7 @@ TEST(MocapDialects, HaveTheAddressesOfTheirSenders) {
   MocapSetup vmc;
   ASSERT_TRUE(set_mocap_dialect(vmc, "vmc", "", true).ok());
   EXPECT_EQ(vmc.bones.size(), 55u);
-  EXPECT_EQ(set_mocap_dialect(vmc, "psn", "", true).error().substr(0, 27), "there is no dialect 'psn'; ");
+  EXPECT_EQ(set_mocap_dialect(vmc, "pns", "", true).error().substr(0, 27), "there is no dialect 'pns'; ");
 }
 
 }  // namespace

@@ -81,9 +81,10 @@ void add_network(CLI::App& play, NetworkOptions& o) {
                 "Arm the output to lights from the start. Replays and --fast send to lights only with this option.");
   play.add_option("--lights-out", o.lights_out,
                   "Where the values of lighting fixtures are sent while the output is armed; default sacn; may be "
-                  "repeated. Settings after it: rate=44, priority=100, sync=1, interface=10.0.0.2, name=Limber, "
-                  "exit=blackout|hold, panic=hold|blackout.")
-      ->type_name("artnet|sacn[:ADDR[:PORT]][,...]|off")
+                  "repeated. enttec:/dev/ttyUSB0 is an Enttec DMX USB Pro. Settings after it: rate=44, priority=100, "
+                  "sync=1, interface=10.0.0.2, name=Limber, universe=1 (of enttec), exit=blackout|hold, "
+                  "panic=hold|blackout.")
+      ->type_name("artnet|sacn[:ADDR[:PORT]]|enttec:DEVICE[,...]|off")
       ->allow_extra_args(false);
   play.add_option("--zeroconf", o.zeroconf,
                   "Announce the ports of OSC and OSCQuery by zeroconf under this name, so that tablets find them.")

@@ -15,8 +15,9 @@ namespace limber::lighting {
 namespace {
 
 constexpr const char* kLightsUsage =
-    "write artnet[:ADDRESS[:PORT]] or sacn[:ADDRESS[:PORT]], such as artnet:10.0.0.5, then ,rate=44 ,priority=100 "
-    ",sync=1 ,interface=10.0.0.2 ,name=Limber ,exit=blackout|hold ,panic=hold|blackout; or off";
+    "write artnet[:ADDRESS[:PORT]], sacn[:ADDRESS[:PORT]] or enttec:DEVICE, such as artnet:10.0.0.5, then ,rate=44 "
+    ",priority=100 ,sync=1 ,interface=10.0.0.2 ,name=Limber ,universe=1 ,exit=blackout|hold ,panic=hold|blackout; "
+    "or off";
 
 std::optional<double> whole_number(std::string_view text, double low, double high) {
   const std::optional<double> number = parse_number(text);
@@ -33,6 +34,10 @@ std::optional<std::string> set_number(LightTarget& target, std::string_view key,
     const std::optional<double> priority = whole_number(value, 0, 200);
     if (!priority) return "a whole number from 0 to 200";
     target.priority = static_cast<std::uint8_t>(*priority);
+  } else if (key == "universe") {
+    const std::optional<double> universe = whole_number(value, 1, 63999);
+    if (!universe) return "a universe from 1 to 63999";
+    target.universe = static_cast<std::uint16_t>(*universe);
   } else {
     const std::optional<double> universe = whole_number(value, 1, 63999);
     if (!universe && value != "off") return "a universe from 1 to 63999, or off";
@@ -59,12 +64,16 @@ std::optional<std::string> set_text(LightTarget& target, std::string_view key, s
 
 // Sets one setting. Returns an error text, or nothing.
 std::optional<std::string> set_setting(LightTarget& target, std::string_view key, std::string_view value) {
-  static const std::vector<std::string_view> numbers = {"rate", "priority", "sync"};
-  static const std::vector<std::string_view> known = {"rate", "priority", "sync", "interface", "name", "exit", "panic"};
+  static const std::vector<std::string_view> numbers = {"rate", "priority", "sync", "universe"};
+  static const std::vector<std::string_view> known = {"rate", "priority", "sync", "interface",
+                                                      "name", "universe", "exit", "panic"};
   if (std::ranges::find(known, key) == known.end())
     return fmt::format("unknown setting '{}'{}", printable(key), name_hint(key, known));
   const bool of_sacn = key == "priority" || key == "sync" || key == "name";
   if (of_sacn && target.protocol != Protocol::sacn) return fmt::format("{} is a setting of sacn only", key);
+  const bool serial = target.protocol == Protocol::enttec;
+  if (key == "universe" && !serial) return "universe is a setting of enttec only";
+  if (key == "interface" && serial) return "interface is no setting of enttec";
   const bool is_number = std::ranges::find(numbers, key) != numbers.end();
   const std::optional<std::string> expected = is_number ? set_number(target, key, value) : set_text(target, key, value);
   if (!expected) return std::nullopt;
@@ -73,9 +82,16 @@ std::optional<std::string> set_setting(LightTarget& target, std::string_view key
 
 // Sets protocol and address. Returns an error text, or nothing.
 std::optional<std::string> set_address(LightTarget& target, std::string_view text) {
+  constexpr std::string_view kEnttec = "enttec";
+  if (text == kEnttec || text.starts_with("enttec:")) {
+    target.protocol = Protocol::enttec;
+    target.device = text.substr(std::min(text.size(), kEnttec.size() + 1));
+    if (target.device.empty()) return "the device is missing, such as enttec:/dev/ttyUSB0";
+    return std::nullopt;
+  }
   const std::vector<std::string_view> words = split(text, ':');
   if (words[0] != "artnet" && words[0] != "sacn") {
-    static const std::vector<std::string_view> known = {"artnet", "sacn", "off"};
+    static const std::vector<std::string_view> known = {"artnet", "sacn", "enttec", "off"};
     return fmt::format("unknown protocol '{}'{}", printable(words[0]), name_hint(words[0], known));
   }
   const bool art_net = words[0] == "artnet";
@@ -113,6 +129,8 @@ Result<std::vector<LightTarget>> parse_lights_out(std::string_view text) {
 
 std::string target_text(const LightTarget& target) {
   const std::string at = fmt::format("at most {} Hz", number_text(target.rate));
+  if (target.protocol == Protocol::enttec)
+    return fmt::format("Enttec DMX USB Pro {}, universe {}, {}", printable(target.device), target.universe, at);
   if (target.protocol == Protocol::art_net) return fmt::format("Art-Net {}, {}", system::endpoint_text(target.to), at);
   const std::string to = target.to.ip == 0 ? "multicast" : system::endpoint_text(target.to);
   const std::string sync = target.sync == 0 ? "" : fmt::format(", sync universe {}", target.sync);

@@ -11,9 +11,9 @@
 
 namespace limber::lighting {
 
-enum class Protocol : std::uint8_t { art_net, sacn };
+enum class Protocol : std::uint8_t { art_net, sacn, enttec };
 
-/// A receiver of all universes.
+/// A receiver of all universes, or of one by a serial port.
 struct LightTarget {
   Protocol protocol = Protocol::sacn;
   system::Endpoint to;          ///< An ip of 0: the multicast group of each universe (sACN).
@@ -22,6 +22,8 @@ struct LightTarget {
   std::uint16_t sync = 0;       ///< sACN: universe of the synchronization packets; 0: none.
   std::uint32_t interface = 0;  ///< Address of this machine to send from; 0: the system chooses.
   std::string name = "Limber";  ///< sACN: name of the source.
+  std::string device;           ///< enttec: name of the serial port.
+  std::uint16_t universe = 1;   ///< enttec: the one that it sends.
   bool dark_at_end = true;      ///< Sends dark values when output ends; else the lights keep the last ones.
   bool dark_in_panic = false;   ///< Sends dark values during a panic.
 };
@@ -32,7 +34,8 @@ struct LightingOptions {
   bool in_real_time = true;  ///< False with --fast.
 };
 
-/// Parses one value of --lights-out: "artnet:10.0.0.5,rate=30", "sacn,priority=120,sync=1"; "off": no target.
+/// Parses one value of --lights-out: "artnet:10.0.0.5,rate=30", "sacn,priority=120,sync=1",
+/// "enttec:/dev/ttyUSB0,universe=2"; "off": no target.
 Result<std::vector<LightTarget>> parse_lights_out(std::string_view text);
 /// Describes a target: "sACN multicast, priority 100, at most 44 Hz".
 std::string target_text(const LightTarget& target);

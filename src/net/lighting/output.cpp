@@ -19,6 +19,7 @@ namespace limber::lighting {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
+constexpr int kNotOpened = -1;                        // Output::reported_error
 constexpr std::int64_t kIdleInterval = kSecond / 20;  // between two looks at `armed`
 
 std::int64_t now_nanoseconds() {
@@ -74,36 +75,56 @@ void LightingOutput::stop() {
   link_.lighting.set(engine::LightingStatus::State::no_output);
 }
 
-void LightingOutput::open(Output& output, std::int64_t now) {
-  if (output.socket.is_open() || now < output.retry_at) return;
-  output.retry_at = now + kSecond;
+Result<void> LightingOutput::open_target(Output& output) {
   const LightTarget& target = output.stream.target();
+  if (target.protocol == Protocol::enttec) return output.serial.open(target.device);
   Result<system::UdpSocket> opened = system::open_udp({target.interface, 0});
-  if (!opened) {
-    if (std::exchange(output.reported_error, -1) != -1)
-      log_warning("lights: {} can't be sent from {}: {}. Check interface=; retrying every second", target_text(target),
-                  system::endpoint_text({target.interface, 0}), opened.error());
-    return;
-  }
+  if (!opened)
+    return Error{
+        fmt::format("{}, from {}. Check interface=", opened.error(), system::endpoint_text({target.interface, 0}))};
   output.socket = std::move(*opened);
   system::allow_broadcast(output.socket.fd());
   system::send_multicast_from(output.socket.fd(), target.interface);
+  return {};
+}
+
+void LightingOutput::open(Output& output, std::int64_t now) {
+  if (output.is_open() || now < output.retry_at) return;
+  output.retry_at = now + kSecond;
+  const Result<void> opened = open_target(output);
+  if (opened || std::exchange(output.reported_error, kNotOpened) != 0) return;
+  log_warning("lights: {} can't be opened: {}; retrying every second", target_text(output.stream.target()),
+              opened.error());
 }
 
 void LightingOutput::send(Output& output, const system::Endpoint& to, const std::string& packet) {
-  if (!output.socket.is_open()) return;
-  int error = system::send_datagram(output.socket.fd(), to, packet);
-  if (error != 0 && system::may_report_earlier_datagram(error))
+  if (!output.is_open()) return;
+  int error = 0;
+  if (output.serial.is_open()) {
+    error = output.serial.send(packet);
+  } else {
     error = system::send_datagram(output.socket.fd(), to, packet);
-  if (error == 0) {
-    link_.lighting.packets.fetch_add(1);
-    if (std::exchange(output.reported_error, 0) != 0)
-      log_info("lights: {} is sent again", target_text(output.stream.target()));
-    return;
+    if (error != 0 && system::may_report_earlier_datagram(error))
+      error = system::send_datagram(output.socket.fd(), to, packet);
   }
-  if (std::exchange(output.reported_error, error) == error) return;
-  log_warning("lights: {} can't be reached: {}. Check the address and the network; the output continues",
-              target_text(output.stream.target()), std::generic_category().message(error));
+  if (error == 0) link_.lighting.packets.fetch_add(1);
+  report(output, error);
+}
+
+// Logs an error, and its end, once.
+void LightingOutput::report(Output& output, int error) {
+  const int before = std::exchange(output.reported_error, error);
+  if (error == before) return;
+  const std::string target = target_text(output.stream.target());
+  if (error == 0) {
+    log_info("lights: {} is sent again", target);
+  } else if (output.stream.target().protocol == Protocol::enttec) {
+    log_warning("lights: {} is gone: {}. Connect it again; retrying every second", target,
+                std::generic_category().message(error));
+  } else {
+    log_warning("lights: {} can't be reached: {}. Check the address and the network; the output continues", target,
+                std::generic_category().message(error));
+  }
 }
 
 std::int64_t LightingOutput::send_due(std::int64_t now) {
@@ -129,19 +150,28 @@ std::int64_t LightingOutput::send_due(std::int64_t now) {
   return next;
 }
 
+void LightingOutput::wait_until(std::int64_t next) {
+  std::vector<system::PollEntry> entries{{.fd = wake_.fd()}};
+  for (const std::unique_ptr<Output>& output : outputs_) {
+    if (output->serial.has_unsent()) entries.push_back({.fd = output->serial.fd(), .read = false, .write = true});
+  }
+  (void)system::wait_ready(entries, std::chrono::nanoseconds(std::max<std::int64_t>(0, next - now_nanoseconds())));
+  for (const std::unique_ptr<Output>& output : outputs_) {
+    if (!output->serial.has_unsent()) continue;
+    if (const int error = output->serial.flush(); error != 0) report(*output, error);
+  }
+}
+
 void LightingOutput::run() {
   system::name_this_thread("limber-lights");
   while (!stop_.load()) {
-    const std::int64_t now = now_nanoseconds();
-    const std::int64_t next = send_due(now);
-    system::PollEntry entry{.fd = wake_.fd()};
-    (void)system::wait_ready({&entry, 1},
-                             std::chrono::nanoseconds(std::max<std::int64_t>(0, next - now_nanoseconds())));
+    wait_until(send_due(now_nanoseconds()));
     wake_.clear();
   }
   if (std::exchange(sends_, false)) {
     for (const std::unique_ptr<Output>& output : outputs_) output->stream.end();
   }
+  for (const std::unique_ptr<Output>& output : outputs_) output->serial.close();
 }
 
 }  // namespace limber::lighting

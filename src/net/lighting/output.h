@@ -9,11 +9,13 @@
 #include <thread>
 #include <vector>
 
+#include "base/result.h"
 #include "base/system/clock.h"
 #include "base/system/net/udp_socket.h"
 #include "base/system/wake.h"
 #include "engine/output/engine_link.h"
 #include "net/lighting/options.h"
+#include "net/lighting/serial_sender.h"
 #include "net/lighting/stream.h"
 
 namespace limber::lighting {
@@ -40,7 +42,9 @@ class LightingOutput {
  private:
   struct Output {
     Output(LightTarget target, const Cid& cid, LightStream::Send send) : stream(std::move(target), cid, send) {}
+    bool is_open() const { return socket.is_open() || serial.is_open(); }
     system::UdpSocket socket;
+    SerialSender serial;  // instead of the socket
     LightStream stream;
     std::int64_t retry_at = 0;  // ns
     int reported_error = 0;     // the last one that was logged
@@ -48,6 +52,10 @@ class LightingOutput {
   void run();
   void send(Output& output, const system::Endpoint& to, const std::string& packet);
   void open(Output& output, std::int64_t now);
+  Result<void> open_target(Output& output);
+  void report(Output& output, int error);
+  /// Waits until there is a new snapshot, or the time `next` (ns); meanwhile, continues to write to serial ports.
+  void wait_until(std::int64_t next);
   /// Sends the packets that are due. Returns the time of the next call, ns.
   std::int64_t send_due(std::int64_t now);
 

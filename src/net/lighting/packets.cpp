@@ -12,6 +12,10 @@ constexpr std::uint16_t kArtNetRevision = 14;
 constexpr std::uint8_t kTerminated = 0x40;    // bit 6 of the options
 constexpr std::size_t kSacnDataHeader = 126;  // bytes before the values, with the start code
 constexpr std::size_t kSacnSyncBytes = 49;
+constexpr unsigned kEnttecStart = 0x7e;
+constexpr unsigned kEnttecEnd = 0xe7;
+constexpr unsigned kEnttecSendDmx = 6;  // label
+constexpr std::size_t kEnttecLeastValues = 24;
 
 void byte(std::string& out, unsigned value) { out.push_back(static_cast<char>(value & 255U)); }
 void big_endian16(std::string& out, unsigned value) {
@@ -87,6 +91,20 @@ void write_sacn_sync(const Cid& cid, std::uint16_t universe, std::uint8_t sequen
   byte(out, sequence);
   big_endian16(out, universe);
   big_endian16(out, 0);  // reserved
+}
+
+void write_enttec(std::span<const std::uint8_t> values, std::string& out) {
+  const std::size_t count = std::max(kEnttecLeastValues, values.size());
+  const std::size_t length = count + 1;  // with the start code
+  out.clear();
+  byte(out, kEnttecStart);
+  byte(out, kEnttecSendDmx);
+  byte(out, static_cast<unsigned>(length));
+  byte(out, static_cast<unsigned>(length >> 8U));
+  byte(out, 0);  // start code
+  out.append(reinterpret_cast<const char*>(values.data()), values.size());
+  out.append(count - values.size(), '\0');
+  byte(out, kEnttecEnd);
 }
 
 }  // namespace limber::lighting

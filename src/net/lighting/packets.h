@@ -1,4 +1,5 @@
-// Packets of Art-Net 4 and of sACN (ANSI E1.31-2018) with the values of a DMX universe. [any]
+// Packets of Art-Net 4, of sACN (ANSI E1.31-2018) and of the Enttec DMX USB Pro with the values of a DMX universe.
+// [any]
 #pragma once
 
 #include <array>
@@ -35,6 +36,9 @@ struct SacnHeader {
 void write_sacn_data(const SacnHeader& header, std::span<const std::uint8_t> values, std::string& out);
 /// Writes a synchronization packet of sACN to `out`.
 void write_sacn_sync(const Cid& cid, std::uint16_t universe, std::uint8_t sequence, std::string& out);
+/// Writes a packet for the Enttec DMX USB Pro to `out`: "Output Only Send DMX" of its API, with at least 24 values.
+void write_enttec(std::span<const std::uint8_t> values, std::string& out);
+
 /// Returns the multicast address of a universe in host byte order: 239.255.high.low.
 constexpr std::uint32_t sacn_multicast(std::uint16_t universe) { return 0xefff0000U | universe; }
 

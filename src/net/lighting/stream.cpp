@@ -39,21 +39,31 @@ LightStream::Universe& LightStream::universe(std::uint16_t number) {
   return added;
 }
 
+// A serial port has one universe.
+bool LightStream::sends(std::uint16_t universe) const {
+  return target_.protocol != Protocol::enttec || universe == target_.universe;
+}
+
+void LightStream::assign(Universe& to, const sim::DmxUniverse& from, bool dark) {
+  to.present = true;
+  const std::array<std::uint8_t, sim::kDmxChannels>& values = dark ? from.dark : from.values;
+  // once sent, channels stay in the packet, so that a receiver sees the value of each
+  const std::uint16_t length = std::max(to.length, from.length);
+  if (to.is_new || values != to.values || length != to.length) to.repeats = kRepeats + 1;
+  to.values = values;
+  to.dark = from.dark;
+  to.length = length;
+}
+
 std::optional<std::int64_t> LightStream::update(const sim::DmxFrame& frame, std::int64_t now) {
   for (Universe& each : universes_) each.present = false;
   std::optional<std::int64_t> next;
   bool sent = false;
   const bool dark = frame.panicked && target_.dark_in_panic;
   for (const sim::DmxUniverse& from : frame.universes) {
+    if (!sends(from.number)) continue;
     Universe& to = universe(from.number);
-    to.present = true;
-    const std::array<std::uint8_t, sim::kDmxChannels>& values = dark ? from.dark : from.values;
-    // once sent, channels stay in the packet, so that a receiver sees the value of each
-    const std::uint16_t length = std::max(to.length, from.length);
-    if (to.is_new || values != to.values || length != to.length) to.repeats = kRepeats + 1;
-    to.values = values;
-    to.dark = from.dark;
-    to.length = length;
+    assign(to, from, dark);
     const std::int64_t due = to.is_new ? now : to.sent + (to.repeats > 0 ? interval_ : kKeepAlive);
     if (due <= now) {
       send(to, to.values);
@@ -75,7 +85,9 @@ std::optional<std::int64_t> LightStream::update(const sim::DmxFrame& frame, std:
 
 void LightStream::send(Universe& universe, const std::array<std::uint8_t, sim::kDmxChannels>& values, bool terminated) {
   system::Endpoint to = target_.to;
-  if (target_.protocol == Protocol::art_net) {
+  if (target_.protocol == Protocol::enttec) {
+    write_enttec({values.data(), universe.length}, packet_);
+  } else if (target_.protocol == Protocol::art_net) {
     universe.sequence = universe.sequence == 255 ? std::uint8_t{1} : static_cast<std::uint8_t>(universe.sequence + 1);
     write_art_dmx(universe.number, universe.sequence, {values.data(), universe.length}, packet_);
   } else {

@@ -62,6 +62,8 @@ class LightStream {
     bool present = false;  // in the latest frame
   };
   Universe& universe(std::uint16_t number);
+  bool sends(std::uint16_t universe) const;
+  static void assign(Universe& to, const sim::DmxUniverse& from, bool dark);
   void send(Universe& universe, const std::array<std::uint8_t, sim::kDmxChannels>& values, bool terminated = false);
   void end(Universe& universe);
   void send_sync();

@@ -194,6 +194,12 @@ OscConfig effective_config(const OscOptions& options, const OscConfig* scene) {
   if (scene != nullptr && !scene->targets.empty()) config.targets = scene->targets;
   if (options.in) config.listen = *options.in;
   if (options.out) config.targets = *options.out;
+  const bool off = options.in && options.in->empty();
+  if (scene != nullptr && !off) {
+    for (const ListenAddress& address : scene->trackers) {
+      if (std::ranges::find(config.listen, address) == config.listen.end()) config.listen.push_back(address);
+    }
+  }
   return config;
 }
 

@@ -52,7 +52,7 @@ Result<std::vector<Cidr>> parse_osc_allow(std::string_view text);
 OscConfig default_osc_config();
 
 /// Returns the listen addresses and targets, each from the first source that sets them: command line, scene, default.
-/// [any]
+/// The scene's inputs of motion capture are added to the former, unless these are off. [any]
 OscConfig effective_config(const OscOptions& options, const OscConfig* scene);
 
 /// "127.0.0.1:9005 (pos+rot at 60 Hz)" with the settings that differ from the default, for the log.

@@ -26,6 +26,7 @@ constexpr std::size_t kDatagramOverhead = 256;                // budget per data
 constexpr const char* kQueueFullText = "OSC in: messages arrive faster than they are processed; some are dropped";
 constexpr const char* kListenHint =
     "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
+constexpr const char* kTrackerHint = "Motion capture from there is missing; it is tried again each second";
 
 std::vector<std::uint32_t> own_addresses() {
   std::vector<std::uint32_t> list;
@@ -63,7 +64,12 @@ std::vector<std::string> Receiver::listen(const std::vector<ListenAddress>& addr
   for (const ListenAddress& address : addresses) {
     const bool open_already = std::ranges::any_of(sockets_, [&](const auto& s) { return s->address == address; });
     if (open_already) continue;
-    if (std::optional<std::string> error = open(address)) errors.push_back(*error);
+    const std::optional<std::string> error = open(address);
+    const bool reported = std::erase(unopened_, address) > 0;
+    if (!error) continue;
+    if (!address.optional) errors.push_back(*error);
+    if (address.optional && !reported) log_warning("{}", *error);
+    if (address.optional) unopened_.push_back(address);
   }
   retry_at_.reset();
   if (can_retry(addresses)) retry_at_ = clock_.steady() + kListenRetryInterval;
@@ -100,10 +106,11 @@ bool Receiver::can_retry(const std::vector<ListenAddress>& addresses) const {
 std::optional<std::string> Receiver::open(const ListenAddress& address) {
   const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
   const Result<Endpoint> at = resolve(address.address, address.port);
-  if (!at) return fmt::format("OSC can't listen on {}: {}. {}", name, at.error(), kListenHint);
+  const char* const hint = address.optional ? kTrackerHint : kListenHint;
+  if (!at) return fmt::format("OSC can't listen on {}: {}. {}", name, at.error(), hint);
   Result<system::UdpSocket> socket =
       system::is_multicast(at->ip) ? system::open_multicast(*at, own_addresses()) : system::open_udp(*at);
-  if (!socket) return fmt::format("OSC can't listen on {}: {}. {}", name, socket.error(), kListenHint);
+  if (!socket) return fmt::format("OSC can't listen on {}: {}. {}", name, socket.error(), hint);
 
   system::count_dropped(socket->fd());
   const int granted = system::set_receive_buffer(socket->fd(), kReceiveBuffer);
@@ -239,6 +246,7 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
     });
     return;
   }
+  if (is_psn({data, size})) return process_psn({data, size}, origin, scanned);
   const char* error = packet_fault(data, size);
   Result<Decoded> decoded = error == nullptr ? decode_packet(data, size) : Result<Decoded>(Error{error});
   if (!decoded) {
@@ -275,6 +283,23 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
     later[i].origin = origin;
     if (!later[i].messages.empty()) deliver(decoded->later[i].time_tag, std::move(later[i]), false);
   }
+}
+
+void Receiver::process_psn(std::string_view bytes, const CommandOrigin& origin, ScanResult scanned) {
+  Result<std::vector<Message>> messages = psn_.translate(bytes, origin.ip, clock_.steady());
+  if (!messages) {
+    link_.counters.malformed.fetch_add(1, std::memory_order_relaxed);
+    warn_throttled(malformed_log_, [&] {
+      return fmt::format("a packet of PosiStageNet from {} is ignored: {}", endpoint_text({origin.ip, origin.port}),
+                         messages.error());
+    });
+    return;
+  }
+  if (messages->empty()) return;
+  link_.counters.received.fetch_add(messages->size(), std::memory_order_relaxed);
+  Decoded packet{std::move(*messages), {}};
+  if (link_.message_log.enabled()) log_messages(origin, packet);
+  push({std::move(packet.messages), origin, nullptr, scanned.arrival});
 }
 
 void Receiver::log_messages(const CommandOrigin& origin, const Decoded& packet) {

@@ -1,5 +1,6 @@
 // Receiver: owns the listening sockets. A datagram is checked against the allow list, validated and decoded; then it
-// is pushed into the engine's command queue as one command with all its messages, at once or at its time tag. Sockets
+// is pushed into the engine's command queue as one command with all its messages, at once or at its time tag; so are
+// packets of PosiStageNet, which any of the sockets may receive. Sockets
 // are read ahead of decoding, so that urgent requests (engine/commands/urgent.h) reach the engine even when many
 // datagrams are queued before them.
 #pragma once
@@ -20,6 +21,7 @@
 #include "net/osc/endpoint.h"
 #include "net/osc/options.h"
 #include "net/osc/packets/decode.h"
+#include "net/osc/psn/psn_input.h"
 #include "net/osc/scheduled_commands.h"
 #include "net/osc/warning_throttle.h"
 
@@ -106,6 +108,7 @@ class Receiver {
   bool can_retry(const std::vector<ListenAddress>& addresses) const;
   void enqueue(ListenSocket& socket, const char* data, std::size_t size, const Endpoint& from);
   void decode_slice();
+  void process_psn(std::string_view bytes, const CommandOrigin& origin, ScanResult scanned);
   void log_messages(const CommandOrigin& origin, const Decoded& packet);
   void deliver(std::uint64_t time_tag, engine::Command command, bool urgent_pushed);
   void push(engine::Command command, bool urgent_pushed = false);
@@ -122,6 +125,7 @@ class Receiver {
   ScheduledCommands scheduled_;
   std::vector<std::unique_ptr<ListenSocket>> sockets_;
   std::optional<std::int64_t> retry_at_;  // ns; next attempt to open the missing sockets
+  std::vector<ListenAddress> unopened_;   // optional ones that were reported
   system::DatagramReader reader_;
   struct QueuedDatagram {
     std::string bytes;
@@ -133,6 +137,7 @@ class Receiver {
   std::array<KnownSender, kKnownSlots> known_senders_{};
   bool wake_pending_ = false;  // since the engine was last woken
   bool reported_buffer_ = false;
+  PsnInput psn_;
   WarningThrottle malformed_log_, denied_log_, queue_full_log_, kernel_drops_log_, far_future_log_, schedule_full_log_;
 };
 

@@ -7,7 +7,7 @@
 ---@param opts mocap_opts # `source`, and properties such as `offset`.
 ---@return mocap
 ---@error sim:add_mocap("dancer", { source = "absent.bvh" }) --> mocap 'dancer': there is no file 'absent.bvh'; looked for …
----@error sim:add_mocap("dancer", { source = "midi" }) --> mocap 'dancer': there is no dialect 'midi'; there are: osc, vmc
+---@error sim:add_mocap("dancer", { source = "midi" }) --> mocap 'dancer': there is no dialect 'midi'; there are: osc, psn, vmc
 ---@error sim:add_mocap("dancer", { source = "osc", unit = "feet" }) --> add_mocap: unit is 'm', 'cm', 'mm', 'in', 'ft', or a number of meters, not 'feet'
 ---@error sim:add_mocap("dancer", { messages = { ["/a"] = "x y" } }) --> mocap 'dancer': /a: 'x' needs all 3 words of its vector
 ---@see mocap, sim:mocap
@@ -55,13 +55,13 @@ function mocap_:add_body(name, opts) end
 ---@field radius? number # default 0.04. Radius of the capsules, m.
 
 ---@class mocap_opts
----@field source? string # A BVH file (`"dance.bvh"`), `"osc"` for `/mocap/joint/pos_world` and similar addresses, or `"vmc"`.
+---@field source? string # A BVH file (`"dance.bvh"`), `"osc"` for `/mocap/joint/pos_world` and similar addresses, `"vmc"`, or `"psn"` for PosiStageNet; `"psn:ADDR:PORT"` receives it there instead of at 236.10.10.10:56565.
 ---@field dancer? integer|string # For `"osc"`: N receives `/mocap/N/joint/…`; without it, `/mocap/joint/…`.
 ---@field messages? table<string, string> # For any other format: each address and the words that name its arguments.
 ---@field joints? string[] # Expected joints; messages without names have them in this order.
 ---@field bones? table[] # Parents: a list of `{ parent, child }` or `{ parent, child, length }`, m.
----@field up? "x"|"y"|"z" # The vertical axis of the source; default "z", for files and VMC "y".
----@field handed? "right"|"left" # default "right", for VMC "left".
+---@field up? "x"|"y"|"z" # The vertical axis of the source; default "z", for files, VMC and PosiStageNet "y".
+---@field handed? "right"|"left" # default "right", for VMC and PosiStageNet "left".
 ---@field unit? "m"|"cm"|"mm"|"in"|"ft"|number # default "m"; a number: length of a unit in meters.
 ---@field quaternion? "wxyz"|"xyzw" # Order of quaternions of `"osc"`; default "wxyz".
 ---@opts mocap

@@ -1,10 +1,14 @@
 // C API: sources of motion capture.
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "base/system/net/socket.h"
 #include "base/text.h"
 #include "script/api/script_context.h"
 #include "sim/mocap/mocap_list.h"
@@ -24,24 +28,50 @@ Result<std::size_t> choice_of(const std::string& text, std::string_view option, 
   return Error{fmt::format("{} has no value '{}'{}", option, printable(text), name_hint(text, words))};
 }
 
-Result<void> complete_mocap_setup(ScriptContext& c) {
-  MocapArguments& arguments = c.arguments.mocap;
-  sim::MocapSetup& setup = arguments.setup;
-  const bool vmc = arguments.dialect == "vmc";
-  const bool y_up = vmc || !arguments.file.empty();  // the convention of VMC and of BVH files
+constexpr std::string_view kPsn = "psn";
+
+bool is_psn(const std::string& dialect) { return dialect == kPsn || dialect.starts_with("psn:"); }
+
+// The address of "psn" or "psn:ADDR:PORT".
+Result<ListenAddress> psn_address(const std::string& dialect) {
+  ListenAddress address{"236.10.10.10", 56565, true};  // those of the protocol
+  if (dialect == kPsn) return address;
+  const std::vector<std::string_view> pieces = split(dialect, ':');
+  const auto port = pieces.size() == 3 ? parse_number(pieces[2]) : std::nullopt;
+  if (!port || *port != std::floor(*port) || *port < 1 || *port > 65535 || !system::parse_ipv4(std::string(pieces[1])))
+    return Error{
+        fmt::format("source '{}' must be psn or psn:ADDR:PORT, such as psn:236.10.10.10:56565", printable(dialect))};
+  address.address = pieces[1];
+  address.port = static_cast<std::uint16_t>(*port);
+  return address;
+}
+
+// Sets the axes, for which each kind of source has its convention.
+Result<void> set_mocap_axes(MocapArguments& arguments) {
+  sim::MocapAxes& axes = arguments.setup.axes;
+  const bool stage = arguments.dialect == "vmc" || is_psn(arguments.dialect);  // left-handed, Y up
+  const bool y_up = stage || !arguments.file.empty();                          // of BVH files, too
   const Result<std::size_t> up_axis =
       choice_of(arguments.up.empty() ? (y_up ? "y" : "z") : arguments.up, "up", {"x", "y", "z"});
   if (!up_axis) return Error{up_axis.error()};
-  setup.axes.up = static_cast<sim::MocapAxes::Up>(*up_axis);
+  axes.up = static_cast<sim::MocapAxes::Up>(*up_axis);
   const Result<std::size_t> hand =
-      choice_of(arguments.handed.empty() ? (vmc ? "left" : "right") : arguments.handed, "handed", {"right", "left"});
+      choice_of(arguments.handed.empty() ? (stage ? "left" : "right") : arguments.handed, "handed", {"right", "left"});
   if (!hand) return Error{hand.error()};
-  setup.axes.left_handed = *hand == 1;
+  axes.left_handed = *hand == 1;
+  return {};
+}
+
+Result<void> complete_mocap_setup(ScriptContext& c) {
+  MocapArguments& arguments = c.arguments.mocap;
+  sim::MocapSetup& setup = arguments.setup;
+  if (Result<void> axes = set_mocap_axes(arguments); !axes) return axes;
   const Result<std::size_t> order =
       choice_of(arguments.quaternion.empty() ? "wxyz" : arguments.quaternion, "quaternion", {"wxyz", "xyzw"});
   if (!order) return Error{order.error()};
   if (!arguments.dialect.empty())
-    return sim::set_mocap_dialect(setup, arguments.dialect, arguments.dancer, *order == 0);
+    return sim::set_mocap_dialect(setup, is_psn(arguments.dialect) ? std::string(kPsn) : arguments.dialect,
+                                  arguments.dancer, *order == 0);
   if (arguments.file.empty()) return {};
   const Result<std::string> path = c.sources->find(c.files, arguments.file);
   if (!path) return Error{path.error()};
@@ -91,9 +121,17 @@ std::int32_t add_mocap(void* c, const char* name, std::int32_t length) {
   const std::string name_text(text_of(name, length));
   if (const Result<void> complete = complete_mocap_setup(context); !complete)
     return context.reject(fmt::format("mocap '{}': {}", printable(name_text), complete.error()));
+  std::optional<ListenAddress> trackers;
+  if (is_psn(context.arguments.mocap.dialect)) {
+    const Result<ListenAddress> address = psn_address(context.arguments.mocap.dialect);
+    if (!address) return context.reject(fmt::format("mocap '{}': {}", printable(name_text), address.error()));
+    trackers = *address;
+  }
   const Result<sim::MocapSource*> added = context.world->sensing().mocap().add(
       name_text, std::make_shared<const sim::MocapSetup>(std::move(context.arguments.mocap.setup)));
-  return added ? context.set_id((*added)->id()) : context.reject(added.error());
+  if (!added) return context.reject(added.error());
+  if (trackers) context.osc.config.trackers.push_back(std::move(*trackers));
+  return context.set_id((*added)->id());
 }
 
 std::int32_t mocap_expect(void* c, std::int32_t slot, std::int32_t generation, const char* name, std::int32_t length) {

@@ -108,8 +108,12 @@ Result<void> set_mocap_dialect(MocapSetup& setup, const std::string& dialect, co
     add_vmc_bones(setup);
     return {};
   }
+  if (dialect == "psn") {
+    setup.messages = {{"/psn/tracker", "joint x y z qw qx qy qz confidence"}};
+    return {};
+  }
   return Error{fmt::format("there is no dialect '{}'{}", printable(dialect),
-                           name_hint(dialect, std::vector<std::string>{"osc", "vmc"}))};
+                           name_hint(dialect, std::vector<std::string>{"osc", "psn", "vmc"}))};
 }
 
 }  // namespace limber::sim

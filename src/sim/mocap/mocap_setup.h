@@ -54,8 +54,9 @@ struct MocapSetup {
   bool operator==(const MocapSetup& other) const;
 };
 
-/// The messages of a dialect: "osc" (/mocap/joint/…, or /mocap/<dancer>/joint/… if `dancer` is not empty) or
-/// "vmc", whose bones are in the setup, too. `w_first`: order of the quaternions of "osc".
+/// The messages of a dialect: "osc" (/mocap/joint/…, or /mocap/<dancer>/joint/… if `dancer` is not empty), "psn" (those
+/// that net/osc makes of PosiStageNet) or "vmc", whose bones are in the setup, too. `w_first`: order of the quaternions
+/// of "osc".
 Result<void> set_mocap_dialect(MocapSetup& setup, const std::string& dialect, const std::string& dancer, bool w_first);
 
 }  // namespace limber::sim

@@ -21,12 +21,6 @@ constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
 const Vec3 kDefaultEye{4.5, -6, 3.5};
 const Vec3 kDefaultTarget{0, 0, 1};
 
-struct View {
-  Vec3 position;
-  Vec3 rotation;  // degrees
-  double distance = 0;
-};
-
 // Returns Rx(x)·Ry(y)·Rz(z), degrees.
 Mat3 rotation_matrix(const Vec3& rotation) {
   const Vec3 r = rotation / kDegreesPerRadian;
@@ -34,11 +28,17 @@ Mat3 rotation_matrix(const Vec3& rotation) {
   return about({1, 0, 0}, r.x) * about({0, 1, 0}, r.y) * about({0, 0, 1}, r.z);
 }
 
+constexpr std::array kPose = {"position", "rotation", "distance"};
+
+std::array<double, 3> to_array(const Vec3& v) { return {v.x, v.y, v.z}; }
+
+}  // namespace
+
 // Rz rotates the direction into the plane of y and z, Rx from there to −z, the viewing direction.
-View view_from_to(const Vec3& eye, const Vec3& target) {
+CameraView view_from_to(const Vec3& eye, const Vec3& target) {
   const Vec3 direction = target - eye;
   const double horizontal = fixed::hypot(direction.x, direction.y);
-  View view;
+  CameraView view;
   view.distance = glm::length(direction);
   // looking straight up or down, the angle about z is arbitrary
   const double heading =
@@ -48,14 +48,8 @@ View view_from_to(const Vec3& eye, const Vec3& target) {
   return view;
 }
 
-constexpr std::array kPose = {"position", "rotation", "distance"};
-
-std::array<double, 3> to_array(const Vec3& v) { return {v.x, v.y, v.z}; }
-
-}  // namespace
-
 const PropertyTable& Camera::table() {
-  static const View start = view_from_to(kDefaultEye, kDefaultTarget);
+  static const CameraView start = view_from_to(kDefaultEye, kDefaultTarget);
   static const PropertyTable table(
       "camera", "/visuals/camera", "/visuals/camera",
       {
@@ -95,7 +89,7 @@ Vec3 Camera::target() const {
 
 void Camera::look_at(const Vec3& eye, const Vec3& target) {
   if (eye == target) return;
-  const View view = view_from_to(eye, target);
+  const CameraView view = view_from_to(eye, target);
   (void)store_.set(id_, table().at("position"), to_array(view.position));
   (void)store_.set(id_, table().at("rotation"), to_array(view.rotation));
   (void)store_.set(id_, table().at("distance"), {&view.distance, 1});

@@ -17,6 +17,15 @@ namespace limber::sim {
 
 class FixtureList;
 
+/// The pose of a camera, in the conventions of Camera.
+struct CameraView {
+  Vec3 position{0};
+  Vec3 rotation{0};  ///< Degrees.
+  double distance = 0;
+};
+/// Returns the upright view from one point to another; they must differ. [any]
+CameraView view_from_to(const Vec3& eye, const Vec3& target);
+
 /// The camera, with the conventions of ofxDabPhysics: the view matrix is T(position)·Rx·Ry·Rz. `eye` and `target` are
 /// derived from it.
 class Camera {

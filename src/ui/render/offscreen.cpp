@@ -15,6 +15,8 @@ namespace limber::render {
 
 namespace {
 
+constexpr const char* kEglLibrary = "libEGL.so.1";
+
 std::vector<EGLDisplay> displays() {
   std::vector<EGLDisplay> all;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device") &&
@@ -79,7 +81,7 @@ Result<std::unique_ptr<OffscreenContext>> OffscreenContext::make(std::string_vie
   const std::vector<GlApi> apis = gl_apis(choice);
   std::vector<std::string> offered;
   // checked first, because the function loader aborts the program if the library is missing
-  if (!system::load_library("libEGL.so.1")) return Error{gl_context_error(apis, offered)};
+  if (!system::load_library(kEglLibrary)) return Error{gl_context_error(apis, offered)};
   for (const EGLDisplay display : displays()) {
     if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) != EGL_TRUE) continue;
     for (const GlApi api : apis) {
@@ -95,9 +97,9 @@ Result<std::unique_ptr<OffscreenContext>> OffscreenContext::make(std::string_vie
   return Error{gl_context_error(apis, offered)};
 }
 
-void OffscreenContext::make_current() const {
-  eglBindAPI(api_ == GlApi::es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
-  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_);
+bool OffscreenContext::make_current() const {
+  return eglBindAPI(api_ == GlApi::es ? EGL_OPENGL_ES_API : EGL_OPENGL_API) == EGL_TRUE &&
+         eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) == EGL_TRUE;
 }
 
 OffscreenContext::~OffscreenContext() {
@@ -105,6 +107,29 @@ OffscreenContext::~OffscreenContext() {
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
   // the display is not terminated, because drivers leak memory when they are unloaded
+}
+
+CurrentContextGuard::CurrentContextGuard() : loaded_(system::load_library(kEglLibrary)) {
+  if (!loaded_) return;
+  api_ = eglQueryAPI();
+  context_ = eglGetCurrentContext();
+  if (context_ == EGL_NO_CONTEXT) return;
+  display_ = eglGetCurrentDisplay();
+  drawn_ = eglGetCurrentSurface(EGL_DRAW);
+  read_ = eglGetCurrentSurface(EGL_READ);
+}
+
+// Without an own context, the one that is current now is released.
+CurrentContextGuard::~CurrentContextGuard() {
+  if (!loaded_) return;
+  if (context_ != EGL_NO_CONTEXT) {
+    eglBindAPI(api_);
+    eglMakeCurrent(display_, drawn_, read_, context_);
+    return;
+  }
+  const EGLDisplay current = eglGetCurrentDisplay();
+  if (current != EGL_NO_DISPLAY) eglMakeCurrent(current, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglBindAPI(api_);
 }
 
 }  // namespace limber::render

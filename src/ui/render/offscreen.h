@@ -20,8 +20,8 @@ class OffscreenContext {
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
   GlApi api() const { return api_; }
-  /// Makes the context current again after another one was. [main]
-  void make_current() const;
+  /// Makes the context current again after another one was. False: the driver reports an error. [main]
+  bool make_current() const;
 
  private:
   OffscreenContext(void* display, void* context, GlApi api) : display_(display), context_(context), api_(api) {}
@@ -29,6 +29,23 @@ class OffscreenContext {
   void* display_;
   void* context_;
   GlApi api_;
+};
+
+/// Restores at its end which EGL context is current on this thread, for programs that have contexts of their own. [any]
+class CurrentContextGuard {
+ public:
+  CurrentContextGuard();
+  ~CurrentContextGuard();
+  CurrentContextGuard(const CurrentContextGuard&) = delete;
+  CurrentContextGuard& operator=(const CurrentContextGuard&) = delete;
+
+ private:
+  bool loaded_;
+  unsigned api_ = 0;
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+  void* drawn_ = nullptr;  // surfaces
+  void* read_ = nullptr;
 };
 
 }  // namespace limber::render

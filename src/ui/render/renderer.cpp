@@ -400,24 +400,28 @@ void Renderer::draw_depth_maps(const Lighting& lighting) {
 
 Result<void> Renderer::draw(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, int width,
                             int height, const FreeArea& free_area) {
-  return draw_into(target_, previous, current, mix, width, height, free_area);
+  return draw_into(target_, previous, current, mix, engine::camera_of(current), width, height, free_area);
+}
+
+Result<void> Renderer::draw_from(const engine::Snapshot& current, const engine::CameraSettings& camera, int width,
+                                 int height) {
+  return draw_into(target_, current, current, 1, camera, width, height, {});
 }
 
 Result<void> Renderer::draw_output(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
                                    int width, int height) {
-  return draw_into(output_, previous, current, mix, width, height, {});
+  return draw_into(output_, previous, current, mix, engine::camera_of(current), width, height, {});
 }
 
 Result<void> Renderer::draw_into(RenderTarget& target, const engine::Snapshot& previous,
-                                 const engine::Snapshot& current, double mix, int width, int height,
-                                 const FreeArea& free_area) {
+                                 const engine::Snapshot& current, double mix, const engine::CameraSettings& camera,
+                                 int width, int height, const FreeArea& free_area) {
   width = std::max(width, 1);
   height = std::max(height, 1);
   if (width > max_size_ || height > max_size_)
     return Error{fmt::format("an image of {} × {} is too large: {} supports up to {} per side", width, height,
                              gl_driver(), max_size_)};
   if (Result<void> sized = target.resize(width, height, settings_.samples); !sized) return sized;
-  const engine::CameraSettings camera = engine::camera_of(current);
   const engine::AppearanceSettings appearance = engine::appearance_of(current);
   const CameraMatrices matrices = camera_matrices(camera, width, height, free_area);
   draw_list_.update(previous, current, mix,

@@ -41,6 +41,8 @@ class Renderer {
   Result<void> draw(const engine::Snapshot& current, int width, int height) {
     return draw(current, current, 1, width, height);
   }
+  /// Draws the scene as this camera sees it, instead of that of the snapshot. [main]
+  Result<void> draw_from(const engine::Snapshot& current, const engine::CameraSettings& camera, int width, int height);
   /// Draws a second image of the scene for the output window, without panels; independent of draw()'s image. [main]
   Result<void> draw_output(const engine::Snapshot& previous, const engine::Snapshot& current, double mix, int width,
                            int height);
@@ -85,7 +87,8 @@ class Renderer {
 
   DepthMap make_depth(int side, bool compares) const;
   Result<void> draw_into(RenderTarget& target, const engine::Snapshot& previous, const engine::Snapshot& current,
-                         double mix, int width, int height, const FreeArea& free_area);
+                         double mix, const engine::CameraSettings& camera, int width, int height,
+                         const FreeArea& free_area);
   void draw_overlay(const engine::Snapshot& previous, const engine::Snapshot& current, double mix,
                     const RenderTarget& target);
   const GpuMesh& mesh(const MeshKey& key, int detail);

@@ -45,7 +45,7 @@ local function set_source(opts)
     fail("add_mocap: dancer has no effect on messages; remove it, and write it in their addresses")
   end
   if source == nil and opts.messages ~= nil then return end
-  P.check_text(source, "add_mocap: source (a .bvh file, 'osc' or 'vmc')")
+  P.check_text(source, "add_mocap: source (a .bvh file, 'osc', 'psn' or 'vmc')")
   if source:lower():find("%.bvh$") then
     if opts.messages ~= nil or opts.dancer ~= nil then
       fail("add_mocap: a file has no messages and no dancer; remove one or the other")
@@ -54,10 +54,12 @@ local function set_source(opts)
     return option(file, source, "add_mocap: source")
   end
   if source == "osc" and opts.messages ~= nil then return end
-  if source == "vmc" and opts.messages ~= nil then
-    fail("add_mocap: VMC has messages of its own; remove source or messages")
+  local psn = source:find("^psn") ~= nil
+  if (source == "vmc" or psn) and opts.messages ~= nil then
+    fail("add_mocap: %s has messages of its own; remove source or messages", psn and "PosiStageNet" or "VMC")
   end
   if source == "vmc" and opts.dancer ~= nil then fail("add_mocap: VMC has no dancer; give each its own port") end
+  if psn and opts.dancer ~= nil then fail("add_mocap: PosiStageNet has no dancer; its trackers are the joints") end
   option(dialect, source, "add_mocap: source")
 end
 
