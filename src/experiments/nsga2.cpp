@@ -43,7 +43,7 @@ double spread(double u, double bound) {
 
 Nsga2::Nsga2(const Options& options) : options_(options) {
   if (options_.population == 0) options_.population = kPopulation;
-  options_.population = std::max<std::size_t>(4, (options_.population + 1) / 2 * 2);
+  options_.population = std::clamp<std::size_t>((options_.population + 1) / 2 * 2, 4, kMaxPopulation);
 }
 
 void Nsga2::rank(std::vector<Member>& members) {
@@ -112,9 +112,9 @@ void Nsga2::mutate(Vector& individual, Random& random) const {
     const bool mutated = random.uniform() < probability;
     const double u = random.uniform();
     if (!mutated) continue;
-    const double room = fixed::pow(u < 0.5 ? 1 - x : x, kMutationIndex + 1);
-    const double step = u < 0.5 ? fixed::pow(2 * u + (1 - 2 * u) * room, exponent) - 1
-                                : 1 - fixed::pow(2 * (1 - u) + 2 * (u - 0.5) * room, exponent);
+    const double beyond = fixed::pow(u < 0.5 ? 1 - x : x, kMutationIndex + 1);
+    const double step = u < 0.5 ? fixed::pow(2 * u + (1 - 2 * u) * beyond, exponent) - 1
+                                : 1 - fixed::pow(2 * (1 - u) + 2 * (u - 0.5) * beyond, exponent);
     x = std::clamp(x + step, 0.0, 1.0);
   }
 }

@@ -16,15 +16,16 @@ namespace limber::experiments {
 class Nsga2 {
  public:
   using Vector = std::vector<double>;
-  static constexpr double kCrossover = 0.9;       ///< Probability that two parents are crossed.
-  static constexpr double kCrossoverIndex = 15;   ///< Larger: children are nearer to their parents.
-  static constexpr double kMutationIndex = 20;    ///< The same for mutations, which change one axis on average.
-  static constexpr std::size_t kPopulation = 40;  ///< Default.
+  static constexpr double kCrossover = 0.9;            ///< Probability that two parents are crossed.
+  static constexpr double kCrossoverIndex = 15;        ///< Larger: children are nearer to their parents.
+  static constexpr double kMutationIndex = 20;         ///< The same for mutations, which change one axis on average.
+  static constexpr std::size_t kPopulation = 40;       ///< Default.
+  static constexpr std::size_t kMaxPopulation = 1000;  ///< Sorting takes quadratic time and memory.
 
   struct Options {
     std::size_t axes = 1;
     std::size_t objectives = 2;
-    std::size_t population = 0;  ///< Even, at least 4; 0: kPopulation.
+    std::size_t population = 0;  ///< Even, 4 .. kMaxPopulation; 0: kPopulation.
     std::uint64_t seed = 1;
   };
 

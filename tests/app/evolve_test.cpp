@@ -195,6 +195,7 @@ TEST(Evolve, WrongObjectivesAreExplained) {
   expect_fault({"--maximize", "distance", "--algorithm", "map-elites"}, "name its descriptors");
   expect_fault({"--maximize", "distance", "--descriptor", "distance", "--algorithm", "nsga2"},
                "only map-elites has descriptors");
+  expect_fault({"--maximize", "distance", "--minimize", "noise", "--population", "1001"}, "of nsga2 at most 1000");
   const RunResult result = run({"evolve", "--maximize", "distance"}, folder.path());
   EXPECT_EQ(result.code, 2);
   EXPECT_NE(result.err.find("name the scene"), std::string::npos) << result.err;

@@ -24,6 +24,7 @@
 #include "base/system/signals.h"
 #include "base/text.h"
 #include "experiments/map_elites.h"
+#include "experiments/nsga2.h"
 #include "experiments/search.h"
 
 namespace limber::app {
@@ -33,6 +34,7 @@ namespace {
 namespace fs = std::filesystem;
 using experiments::Evaluation;
 using experiments::MapElites;
+using experiments::Nsga2;
 using experiments::Outcome;
 using experiments::ResultInfo;
 using experiments::Search;
@@ -142,6 +144,8 @@ Result<void> Evolution::choose_algorithm() {
   record_.algorithm = natural;
   const std::string& wanted = command_.algorithm;
   if (wanted == name_of(Search::Algorithm::nsga2) && !archive) record_.algorithm = Search::Algorithm::nsga2;
+  if (record_.algorithm == Search::Algorithm::nsga2 && record_.population > Nsga2::kMaxPopulation)
+    return Error{fmt::format("--population: of nsga2 at most {}", Nsga2::kMaxPopulation)};
   if (wanted.empty() || wanted == name_of(record_.algorithm)) return {};
   if (archive) return Error{fmt::format("--algorithm {}: only map-elites has descriptors", wanted)};
   if (wanted == name_of(Search::Algorithm::map_elites))
