@@ -45,11 +45,11 @@ TEST(Evolve, ArchiveIsTheSameAfterAnyInterruption) {
 }
 
 TEST(Evolve, SurvivesKills) {
-  KilledSearch search(60);
+  KilledSearch search(16);
   search.run_whole();
-  search.run_with_killed_children(6);
+  search.run_with_killed_children(4);
   search.expect_same("children");
-  search.run_with_killed_jobs(3);
+  search.run_with_killed_jobs(2);
   search.expect_same("jobs");
 }
 
@@ -66,7 +66,7 @@ result("high", function() return part.position.z end)
 RunResult evolve_throw(const TempFolder& folder, const std::string& out, const char* jobs, const char* generations,
                        bool resume) {
   std::vector<std::string> words{"evolve",     "throw.lua", "--maximize", "far", "--maximize",    "high",
-                                 "--duration", "1",         "--seeds",    "1:2", "--population",  "20",
+                                 "--duration", "1",         "--seeds",    "1",   "--population",  "12",
                                  "--out",      out,         "--jobs",     jobs,  "--generations", generations};
   if (resume) words.emplace_back("--resume");
   return run(words, folder.path());
@@ -76,7 +76,7 @@ RunResult evolve_throw(const TempFolder& folder, const std::string& out, const c
 TEST(Evolve, SeveralObjectivesGiveTheParetoFront) {
   const TempFolder folder;
   folder.file("throw.lua", kThrow);
-  const RunResult result = evolve_throw(folder, "whole", "2", "25", false);
+  const RunResult result = evolve_throw(folder, "whole", "2", "10", false);
   ASSERT_EQ(result.code, 0) << result.err;
   const std::string csv = content(folder.path() + "/whole/elites.csv");
   const std::vector<Row> table = rows(csv);
@@ -94,8 +94,8 @@ TEST(Evolve, SeveralObjectivesGiveTheParetoFront) {
   EXPECT_GT(std::stod(table[1][4]), 0.8);
   EXPECT_GT(std::stod(table.back()[5]), 0.8);
   // it is the same for any number of jobs, and after interruptions
-  ASSERT_EQ(evolve_throw(folder, "parts", "1", "7", false).code, 0);
-  ASSERT_EQ(evolve_throw(folder, "parts", "3", "25", true).code, 0);
+  ASSERT_EQ(evolve_throw(folder, "parts", "1", "4", false).code, 0);
+  ASSERT_EQ(evolve_throw(folder, "parts", "3", "10", true).code, 0);
   EXPECT_EQ(content(folder.path() + "/parts/elites.csv"), csv);
   EXPECT_EQ(content(folder.path() + "/parts/state.json"), content(folder.path() + "/whole/state.json"));
 }
