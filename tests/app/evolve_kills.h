@@ -83,7 +83,7 @@ result("noise", function() return rng:uniform() + part.position.x end)
   std::vector<std::string> command(const std::string& out, bool resume = false) const {
     std::vector<std::string> words{"evolve",       "push.lua", "--maximize",    "noise",
                                    "--descriptor", "distance", "--duration",    "0.1",
-                                   "--population", "10",       "--generations", std::to_string(generations_),
+                                   "--population", "4",        "--generations", std::to_string(generations_),
                                    "--jobs",       "2",        "--out",         out};
     if (resume) words.emplace_back("--resume");
     return limber_command(words);

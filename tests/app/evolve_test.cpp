@@ -45,7 +45,7 @@ TEST(Evolve, ArchiveIsTheSameAfterAnyInterruption) {
 }
 
 TEST(Evolve, SurvivesKills) {
-  KilledSearch search(16);
+  KilledSearch search(14);
   search.run_whole();
   search.run_with_killed_children(4);
   search.expect_same("children");
@@ -66,7 +66,7 @@ result("high", function() return part.position.z end)
 RunResult evolve_throw(const TempFolder& folder, const std::string& out, const char* jobs, const char* generations,
                        bool resume) {
   std::vector<std::string> words{"evolve",     "throw.lua", "--maximize", "far", "--maximize",    "high",
-                                 "--duration", "1",         "--seeds",    "1",   "--population",  "12",
+                                 "--duration", "1",         "--seeds",    "1",   "--population",  "8",
                                  "--out",      out,         "--jobs",     jobs,  "--generations", generations};
   if (resume) words.emplace_back("--resume");
   return run(words, folder.path());
@@ -76,7 +76,7 @@ RunResult evolve_throw(const TempFolder& folder, const std::string& out, const c
 TEST(Evolve, SeveralObjectivesGiveTheParetoFront) {
   const TempFolder folder;
   folder.file("throw.lua", kThrow);
-  const RunResult result = evolve_throw(folder, "whole", "2", "10", false);
+  const RunResult result = evolve_throw(folder, "whole", "2", "6", false);
   ASSERT_EQ(result.code, 0) << result.err;
   const std::string csv = content(folder.path() + "/whole/elites.csv");
   const std::vector<Row> table = rows(csv);
@@ -86,7 +86,7 @@ TEST(Evolve, SeveralObjectivesGiveTheParetoFront) {
   for (std::size_t i = 1; i < table.size(); i++) {
     EXPECT_EQ(table[i][0], std::to_string(i));
     EXPECT_EQ(table[i][1], "front_" + std::to_string(i));
-    EXPECT_NEAR(std::stod(table[i][4]) + std::stod(table[i][5]), 1, 0.1);
+    EXPECT_NEAR(std::stod(table[i][4]) + std::stod(table[i][5]), 1, 0.15);
     if (i == 1) continue;
     EXPECT_LT(std::stod(table[i][4]), std::stod(table[i - 1][4]));
     EXPECT_GT(std::stod(table[i][5]), std::stod(table[i - 1][5]));
@@ -94,8 +94,8 @@ TEST(Evolve, SeveralObjectivesGiveTheParetoFront) {
   EXPECT_GT(std::stod(table[1][4]), 0.8);
   EXPECT_GT(std::stod(table.back()[5]), 0.8);
   // it is the same for any number of jobs, and after interruptions
-  ASSERT_EQ(evolve_throw(folder, "parts", "1", "4", false).code, 0);
-  ASSERT_EQ(evolve_throw(folder, "parts", "3", "10", true).code, 0);
+  ASSERT_EQ(evolve_throw(folder, "parts", "1", "2", false).code, 0);
+  ASSERT_EQ(evolve_throw(folder, "parts", "3", "6", true).code, 0);
   EXPECT_EQ(content(folder.path() + "/parts/elites.csv"), csv);
   EXPECT_EQ(content(folder.path() + "/parts/state.json"), content(folder.path() + "/whole/state.json"));
 }
@@ -105,7 +105,7 @@ TEST(Evolve, ElitesArePresetsOfTheScene) {
   folder.file("push.lua", kPush);
   const std::vector<std::string> words{"evolve",       "push.lua", "--maximize",   "noise", "--descriptor", "distance",
                                        "--out",        "a",        "--duration",   "1",     "--seeds",      "1",
-                                       "--population", "20",       "--generations"};
+                                       "--population", "8",        "--generations"};
   const auto evolve = [&](std::initializer_list<std::string> more) {
     std::vector<std::string> all = words;
     all.insert(all.end(), more);
