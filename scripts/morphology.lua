@@ -9,8 +9,14 @@
 local genome = require "genome"
 
 local RULES = 3
-local declared = genome.params(RULES)
-declared[#declared + 1] = { "rate", 1.2, min = 0.5, max = 2, unit = "Hz", doc = "Swings per second." }
+-- a creature that this search has found
+local FOUND = {
+  0.3431, 0.03765, 0.6261, -0.2167, 2.223, 0.7865, 0.2464, 2.863, 0.5565, 0.7422,
+  0.3068, 0.04001, 0.2187, 0.985, -1.554, 0.7831, 0.604, 0.5449, 0.8446, 0.7376,
+  0.3617, 0.05861, 0.8156, -0.9722, -2.425, 0.8372, 0.1364, 0.1708, 0.8567, 0.2693,
+}
+local declared = genome.params(RULES, FOUND)
+declared[#declared + 1] = { "rate", 1.5, min = 0.5, max = 2, unit = "Hz", doc = "Swings per second." }
 params(declared)
 
 sim:add_body("floor"):add_part("floor", sim:add_plane_shape("floor"), { friction = 1 })

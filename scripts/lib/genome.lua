@@ -42,13 +42,22 @@ local function live_names(rule)
   return live[rule]
 end
 
--- Returns the declarations of `rules` rules, for params { … }.
-function genome.params(rules)
+local function check(numbers, caller)
+  if type(numbers) ~= "table" or #numbers == 0 or #numbers % COUNT ~= 0 then
+    error(("genome.%s: the list must have %d numbers per rule, not %s"):format(
+      caller, COUNT, type(numbers) == "table" and #numbers or "a " .. type(numbers)), 3)
+  end
+end
+
+-- Returns the declarations of `rules` rules, for params { … }. `numbers`: their defaults.
+function genome.params(rules, numbers)
+  if numbers then check(numbers, "params") end
   local list = {}
   for rule = 1, rules do
     for _, gene in ipairs(genome.genes) do
       -- later rules differ a little, so that the defaults give no two equal limbs
-      local default = math.clamp(gene[2] + (rule - 1) * 0.1 * (gene[4] - gene[3]), gene[3], gene[4])
+      local default = gene[2] + (rule - 1) * 0.1 * (gene[4] - gene[3])
+      default = math.clamp(numbers and numbers[#list + 1] or default, gene[3], gene[4])
       list[#list + 1] = {
         name_of(rule, gene), default, min = gene[3], max = gene[4], unit = gene.unit, doc = gene.doc,
         rerun = not gene.live or nil,
@@ -65,13 +74,6 @@ function genome.numbers(values, rules)
     for _, gene in ipairs(genome.genes) do list[#list + 1] = values[name_of(rule, gene)] end
   end
   return list
-end
-
-local function check(numbers, caller)
-  if type(numbers) ~= "table" or #numbers == 0 or #numbers % COUNT ~= 0 then
-    error(("genome.%s: the list must have %d numbers per rule, not %s"):format(
-      caller, COUNT, type(numbers) == "table" and #numbers or "a " .. type(numbers)), 3)
-  end
 end
 
 -- Grows a tree from a list of numbers: a list of limbs, each after the one that it grows from. The first limb follows
