@@ -62,6 +62,7 @@ void Nsga2::rank(std::vector<Member>& members) {
   }
   for (std::size_t number = 0; !front.empty(); number++) {
     std::vector<const Vector*> points;
+    points.reserve(front.size());
     for (const std::size_t i : front) points.push_back(&members[i].objectives);
     const bool valid = is_valid(*points.front());
     const Vector distances = valid ? crowding_distances(points) : Vector(points.size(), 0.0);

@@ -72,6 +72,7 @@ class ArchiveSearch final : public Search {
   std::vector<Vector> ask() const override { return archive_.ask(); }
   void tell(const std::vector<Vector>& individuals, const std::vector<Evaluated>& values) override {
     std::vector<MapElites::Evaluated> evaluated;
+    evaluated.reserve(values.size());
     for (const Evaluated& value : values) evaluated.push_back({value.objectives[0], value.descriptors, value.hash});
     archive_.tell(individuals, evaluated);
   }
