@@ -70,6 +70,8 @@ long_flood() { tests_at_length 'Flood.*'; }
 long_soak() { tests_at_length 'Soak.*'; }
 # --long crash: recovery of 200 killed sessions
 long_crash() { tests_at_length 'LongCrash.*'; }
+# --long evolve: a search with 150 killed child processes and 50 killed jobs
+long_evolve() { tests_at_length 'LongEvolve.*'; }
 # --long takes: takes of ten minutes with random input, and of many random seeds
 long_takes() { tests_at_length 'LongTake.*'; }
 # --long lua_difference: a million random Lua programs, compiled against interpreted (LIMBER_LUA_PROGRAMS)

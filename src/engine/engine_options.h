@@ -36,6 +36,7 @@ struct EngineOptions {
   bool current_scripts = false;        ///< A replay reads the scene from the disk, in its current state.
   struct Files {
     std::string cues;           ///< `--cues`: file of the cues; empty: the one beside the scene, if it exists.
+    std::string presets;        ///< `--presets`: file of the presets; empty: the one beside the scene.
     bool saves_presets = true;  ///< False: presets that scripts store are not written to the disk.
     /// Folder of the lock files that make one program the owner of a scene's presets; empty: no locks.
     std::string locks;

@@ -128,6 +128,7 @@ std::string Axis::text(double value) const {
 
 Result<Axis> make_axis(const AxisText& text, const ParameterInfo& parameter) {
   Axis axis{parameter.name, text.min, text.max, {}, false, parameter.choices};
+  axis.boolean = parameter.whole && parameter.choices.empty();
   if (!text.words.empty()) {
     axis.listed = true;
     for (const std::string& word : text.words) {
@@ -162,6 +163,7 @@ Result<Axis> whole_axis(const ParameterInfo& parameter) {
         fmt::format("the parameter '{}' has no range; add min and max to its declaration, or --param {}=MIN:MAX",
                     parameter.name, parameter.name)};
   Axis axis{parameter.name, parameter.min, parameter.max, {}, parameter.whole, parameter.choices};
+  axis.boolean = parameter.whole && parameter.choices.empty();
   if (parameter.whole) axis.values = whole_numbers(parameter.min, parameter.max);
   return axis;
 }

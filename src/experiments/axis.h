@@ -41,6 +41,7 @@ struct Axis {
   std::vector<double> values;  ///< Values of a grid or list, in the order of the text; empty: a range without a step.
   bool listed = false;         ///< Only `values` are valid: a list, a boolean or a choice.
   std::vector<std::string> choices;
+  bool boolean = false;  ///< 0 or 1.
 
   /// Maps a position 0 .. 1 within the range to a value.
   double at(double position) const;

@@ -26,13 +26,16 @@ std::uint64_t MapElites::cells() const {
   return count;
 }
 
+std::uint64_t MapElites::cell_along(const ResultInfo& descriptor, double value) {
+  const double at = std::floor((value - descriptor.min) / (descriptor.max - descriptor.min) * descriptor.cells);
+  return static_cast<std::uint64_t>(std::clamp(at, 0.0, static_cast<double>(descriptor.cells - 1)));
+}
+
 std::uint64_t MapElites::cell_of(const Vector& descriptors) const {
   std::uint64_t cell = 0;
   for (std::size_t i = 0; i < options_.descriptors.size(); i++) {
     const ResultInfo& axis = options_.descriptors[i];
-    const double at = std::floor((descriptors[i] - axis.min) / (axis.max - axis.min) * axis.cells);
-    cell = cell * static_cast<std::uint64_t>(axis.cells) +
-           static_cast<std::uint64_t>(std::clamp(at, 0.0, static_cast<double>(axis.cells - 1)));
+    cell = cell * static_cast<std::uint64_t>(axis.cells) + cell_along(axis, descriptors[i]);
   }
   return cell;
 }

@@ -57,6 +57,8 @@ class MapElites {
   const std::map<std::uint64_t, Elite>& elites() const { return elites_; }
   /// Number of cells.
   std::uint64_t cells() const;
+  /// Returns the index of the cell along one descriptor; values outside of the range belong to the first or last one.
+  static std::uint64_t cell_along(const ResultInfo& descriptor, double value);
   /// Returns the number of the cell; values outside of a range belong to its first or last cell.
   std::uint64_t cell_of(const Vector& descriptors) const;
 

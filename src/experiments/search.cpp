@@ -1,4 +1,4 @@
-// CMA-ES within bounds, and MAP-Elites, as searches.
+// CMA-ES within bounds, MAP-Elites and NSGA-II, as searches.
 #include "experiments/search.h"
 
 #include <cmath>
@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "experiments/cma_es.h"
+#include "experiments/map_elites.h"
+#include "experiments/nsga2.h"
 
 namespace limber::experiments {
 
@@ -21,7 +23,9 @@ constexpr std::size_t kArchiveBatch = 100;
 class CmaSearch final : public Search {
  public:
   explicit CmaSearch(const Options& options)
-      : axes_(options.axes), es_(Vector(options.axes, kStart), kSigma, options.seed, options.population) {}
+      : axes_(options.axes),
+        es_(Vector(options.axes, kStart), kSigma, options.seed, options.population),
+        elites_(options.axes, 1) {}
 
   std::vector<Vector> ask() const override {
     std::vector<Vector> individuals = es_.ask();
@@ -33,34 +37,23 @@ class CmaSearch final : public Search {
   void tell(const std::vector<Vector>& individuals, const std::vector<Evaluated>& values) override {
     std::vector<double> costs;
     for (std::size_t i = 0; i < values.size(); i++) {
-      costs.push_back(-values[i].fitness);
-      if (!std::isfinite(values[i].fitness)) continue;
-      if (!elites_.empty() && !(values[i].fitness > elites_.back().fitness)) continue;
-      elites_.push_back({individuals[i], values[i].fitness, {}, es_.generation(), i, values[i].hash});
+      costs.push_back(-values[i].objectives[0]);
+      elites_.add({individuals[i], values[i].objectives, {}, es_.generation(), i, values[i].hash});
     }
     es_.tell(es_.ask(), costs);  // before the reflection
   }
   std::uint64_t generation() const override { return es_.generation(); }
   std::size_t population() const override { return es_.population(); }
   bool converged() const override { return es_.converged(); }
-  std::vector<Elite> elites() const override { return elites_; }
-  std::string save() const override {
-    Json elites = Json::array();
-    for (const Elite& e : elites_) elites.push_back({e.individual, e.fitness, e.generation, e.index, e.hash});
-    return Json{{"cma_es", es_.save()}, {"elites", elites}}.dump();
-  }
+  std::vector<Elite> elites() const override { return elites_.elites(); }
+  std::string save() const override { return Json{{"cma_es", es_.save()}, {"elites", elites_.save()}}.dump(); }
   Result<void> restore(std::string_view text) override try {
     const Json json = Json::parse(text);
     Result<CmaEs> es = CmaEs::restore(json.at("cma_es").get<std::string>());
     if (!es) return Error{es.error()};
     if (es->mean().size() != axes_) return Error{"the saved search has other parameters"};
-    std::vector<Elite> elites;
-    for (const Json& e : json.at("elites")) {
-      elites.push_back({e.at(0).get<Vector>(), e.at(1), {}, e.at(2), e.at(3), e.at(4)});
-      if (elites.back().individual.size() != axes_) return Error{"the saved search has other parameters"};
-    }
+    if (Result<void> restored = elites_.restore(json.at("elites").get<std::string>()); !restored) return restored;
     es_ = std::move(*es);
-    elites_ = std::move(elites);
     return {};
   } catch (const Json::exception&) {
     return Error{"the state of the search is damaged"};
@@ -69,7 +62,7 @@ class CmaSearch final : public Search {
  private:
   std::size_t axes_;
   CmaEs es_;
-  std::vector<Elite> elites_;
+  EliteList elites_;
 };
 
 class ArchiveSearch final : public Search {
@@ -78,14 +71,18 @@ class ArchiveSearch final : public Search {
 
   std::vector<Vector> ask() const override { return archive_.ask(); }
   void tell(const std::vector<Vector>& individuals, const std::vector<Evaluated>& values) override {
-    archive_.tell(individuals, values);
+    std::vector<MapElites::Evaluated> evaluated;
+    evaluated.reserve(values.size());
+    for (const Evaluated& value : values) evaluated.push_back({value.objectives[0], value.descriptors, value.hash});
+    archive_.tell(individuals, evaluated);
   }
   std::uint64_t generation() const override { return archive_.generation(); }
   std::size_t population() const override { return batch_; }
   bool converged() const override { return false; }
   std::vector<Elite> elites() const override {
     std::vector<Elite> elites;
-    for (const auto& [cell, elite] : archive_.elites()) elites.push_back(elite);
+    for (const auto& [cell, e] : archive_.elites())
+      elites.push_back({e.individual, {e.fitness}, e.descriptors, e.generation, e.index, e.hash});
     return elites;
   }
   std::string save() const override { return archive_.save(); }
@@ -96,6 +93,39 @@ class ArchiveSearch final : public Search {
   MapElites archive_;
 };
 
+class GeneticSearch final : public Search {
+ public:
+  explicit GeneticSearch(const Options& options)
+      : nsga2_({options.axes, options.objectives, options.population, options.seed}),
+        elites_(options.axes, options.objectives) {}
+
+  std::vector<Vector> ask() const override { return nsga2_.ask(); }
+  void tell(const std::vector<Vector>& individuals, const std::vector<Evaluated>& values) override {
+    std::vector<Vector> objectives;
+    for (std::size_t i = 0; i < values.size(); i++) {
+      elites_.add({individuals[i], values[i].objectives, {}, nsga2_.generation(), i, values[i].hash});
+      objectives.push_back(values[i].objectives);
+    }
+    nsga2_.tell(individuals, objectives);
+  }
+  std::uint64_t generation() const override { return nsga2_.generation(); }
+  std::size_t population() const override { return nsga2_.population(); }
+  bool converged() const override { return false; }
+  std::vector<Elite> elites() const override { return elites_.elites(); }
+  std::string save() const override { return Json{{"nsga2", nsga2_.save()}, {"elites", elites_.save()}}.dump(); }
+  Result<void> restore(std::string_view text) override try {
+    const Json json = Json::parse(text);
+    if (Result<void> restored = nsga2_.restore(json.at("nsga2").get<std::string>()); !restored) return restored;
+    return elites_.restore(json.at("elites").get<std::string>());
+  } catch (const Json::exception&) {
+    return Error{"the state of the search is damaged"};
+  }
+
+ private:
+  Nsga2 nsga2_;
+  EliteList elites_;
+};
+
 }  // namespace
 
 double reflected(double x) {
@@ -104,7 +134,8 @@ double reflected(double x) {
 }
 
 std::unique_ptr<Search> Search::create(const Options& options) {
-  if (options.descriptors.empty()) return std::make_unique<CmaSearch>(options);
+  if (options.algorithm == Algorithm::cma_es) return std::make_unique<CmaSearch>(options);
+  if (options.algorithm == Algorithm::nsga2) return std::make_unique<GeneticSearch>(options);
   MapElites::Options archive;
   archive.axes = options.axes;
   archive.descriptors = options.descriptors;

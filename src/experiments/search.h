@@ -2,25 +2,36 @@
 // 0 .. 1 along each axis; larger values are better. [one thread]
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/result.h"
-#include "experiments/map_elites.h"
+#include "experiments/elite_list.h"
+#include "experiments/evaluation.h"
 
 namespace limber::experiments {
 
 class Search {
  public:
-  using Vector = MapElites::Vector;
-  using Elite = MapElites::Elite;
-  using Evaluated = MapElites::Evaluated;
+  using Vector = std::vector<double>;
+  using Elite = experiments::Elite;
+
+  struct Evaluated {
+    Vector objectives;  ///< Larger is better; NaN: failed.
+    Vector descriptors;
+    std::uint64_t hash = 0;  ///< State hash of its evaluation with the first seed.
+  };
+
+  enum class Algorithm : std::uint8_t { cma_es, map_elites, nsga2 };
 
   struct Options {
+    Algorithm algorithm = Algorithm::cma_es;
     std::size_t axes = 1;
-    std::vector<ResultInfo> descriptors;  ///< None: CMA-ES; else MAP-Elites.
+    std::size_t objectives = 1;           ///< More than one for NSGA-II only.
+    std::vector<ResultInfo> descriptors;  ///< Of MAP-Elites.
     std::size_t population = 0;           ///< 0: the default of the algorithm.
     std::uint64_t seed = 1;
   };
@@ -33,12 +44,13 @@ class Search {
 
   /// Returns the individuals of the next generation; the same until tell().
   virtual std::vector<Vector> ask() const = 0;
+  /// Passes the values of these individuals.
   virtual void tell(const std::vector<Vector>& individuals, const std::vector<Evaluated>& values) = 0;
   virtual std::uint64_t generation() const = 0;
   virtual std::size_t population() const = 0;
   /// True if no progress is possible.
   virtual bool converged() const = 0;
-  /// The elites: of MAP-Elites those of the archive, by cell; of CMA-ES each improvement, the best last.
+  /// The elites: of MAP-Elites those of the archive, by cell; of the others those of an EliteList.
   virtual std::vector<Elite> elites() const = 0;
   /// Returns the state as text, and restores it into a search with the same options.
   virtual std::string save() const = 0;

@@ -1,4 +1,4 @@
-// limber sweep, limber evolve, and the output of limber play.
+// limber sweep, and the output of limber play.
 #include <algorithm>
 #include <csignal>
 #include <sstream>
@@ -7,41 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/program.h"
+#include "app/push_scene.h"
 
 namespace limber::app::test {
 namespace {
-
-/// A ball without gravity that is pushed at the start. After t seconds it is at push · t / mass.
-constexpr const char* kPush = R"(
-params {
-  { "push", 1, min = 0, max = 4 },
-  { "mass", 1, min = 0.5, max = 2, rerun = true },
-  { "way", "forth", choices = { "forth", "back" } },
-}
-sim.gravity = vec3()
-local ball = sim:add_body("ball")
-local part = ball:add_part("ball", sim:add_sphere_shape("ball", 0.1), { mass = params.mass })
-sim:on_start(function()
-  part:apply_impulse(vec3(params.way == "forth" and params.push or -params.push, 0, 0))
-end)
-sim:record { rate = 10, { "x", function() return part.position.x end } }
-result("distance", function() return part.position.x end, { min = -10, max = 10, cells = 20 })
-result("noise", function() return rng:uniform() end)
-)";
-
-using Row = std::vector<std::string>;
-
-std::vector<Row> rows(const std::string& csv) {
-  std::vector<Row> rows;
-  std::istringstream lines(csv);
-  for (std::string line; std::getline(lines, line);) {
-    Row& row = rows.emplace_back();
-    std::istringstream cells(line);
-    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
-  }
-  return rows;
-}
 
 TEST(Sweep, TableHasTheResultsOfAllCombinations) {
   const TempFolder folder;
@@ -217,71 +186,6 @@ TEST(Sweep, WrongInputIsExplained) {
   expect({"plain.lua", "--fast", "--ticks", "1", "--param", "a=1"}, 1, "the scene has no parameters");
   expect({"push.lua", "--fast", "--ticks", "1", "--param", "push"}, 2, "write NAME=VALUE, such as rate=0.5");
   expect({"plain.lua", "--fast", "--ticks", "1", "--out", "x.csv"}, 1, "the scene records no columns");
-}
-
-// The largest distance has the largest push, the smallest mass, and the way forth.
-TEST(Evolve, FindsTheBestValues) {
-  const TempFolder folder;
-  folder.file("push.lua", kPush);
-  const RunResult result =
-      run({"evolve", "push.lua", "--maximize", "distance", "--duration", "1", "--generations", "40"}, folder.path());
-  ASSERT_EQ(result.code, 0) << result.err;
-  ASSERT_TRUE(result.out.starts_with("distance ")) << result.out;
-  EXPECT_GT(std::stod(result.out.substr(9)), 0.95 * 4 / 0.5);
-  EXPECT_NE(result.out.find("--param way=forth"), std::string::npos) << result.out;
-}
-
-TEST(Evolve, ArchiveIsTheSameAfterAnyInterruption) {
-  const TempFolder folder;
-  folder.file("push.lua", kPush);
-  const auto evolve = [&](const std::string& out, const char* generations, const char* jobs, bool resume) {
-    std::vector<std::string> words{"evolve",     "push.lua", "--maximize", "noise", "--descriptor",  "distance",
-                                   "--duration", "1",        "--seeds",    "1:2",   "--population",  "20",
-                                   "--out",      out,        "--jobs",     jobs,    "--generations", generations};
-    if (resume) words.emplace_back("--resume");
-    const RunResult result = run(words, folder.path());
-    EXPECT_EQ(result.code, 0) << result.err;
-    return content(folder.path() + "/" + out + "/elites.csv");
-  };
-  const std::string whole = evolve("whole", "6", "2", false);
-  EXPECT_GT(rows(whole).size(), 3u) << whole;
-  (void)evolve("parts", "2", "1", false);
-  (void)evolve("parts", "3", "3", true);
-  EXPECT_EQ(evolve("parts", "6", "1", true), whole);
-  EXPECT_EQ(content(folder.path() + "/parts/state.json"), content(folder.path() + "/whole/state.json"));
-}
-
-TEST(Evolve, SurvivesTheDeathOfItsProcesses) {
-  const TempFolder folder;
-  folder.file("push.lua", kPush);
-  const auto words = [](const std::string& out) {
-    return limber_command({"evolve", "push.lua", "--maximize", "distance", "--descriptor", "distance", "--duration",
-                           "0.5", "--population", "40", "--generations", "8", "--jobs", "2", "--out", out});
-  };
-  ASSERT_EQ(Process(words("whole"), folder.path()).finish().code, 0);
-  Process process(words("killed"), folder.path());
-  const std::string children = fmt::format("/proc/{}/task/{}/children", process.pid(), process.pid());
-  int kills = 0;
-  const auto ended = [&] {
-    siginfo_t info{};
-    waitid(P_PID, static_cast<id_t>(process.pid()), &info, WEXITED | WNOHANG | WNOWAIT);
-    return info.si_pid != 0;
-  };
-  // one kill in each generation, so that no evaluation is interrupted so often that it counts as a failure
-  std::string seen;
-  for (; !ended(); usleep(5'000)) {
-    const std::string state = content(folder.path() + "/killed/state.json");
-    if (state == seen) continue;
-    seen = state;
-    std::istringstream list(content(children));
-    std::vector<pid_t> pids;
-    for (pid_t pid = 0; list >> pid;) pids.push_back(pid);
-    if (!pids.empty()) ::kill(pids[static_cast<std::size_t>(kills++) % pids.size()], SIGKILL);
-  }
-  const RunResult result = process.finish();
-  EXPECT_GT(kills, 0);
-  EXPECT_EQ(result.code, 0) << result.err;
-  EXPECT_EQ(content(folder.path() + "/killed/elites.csv"), content(folder.path() + "/whole/elites.csv"));
 }
 
 TEST(RunOutput, CsvHasARowPerSample) {

@@ -40,6 +40,8 @@ TEST(MapElites, CellsFollowFromTheRanges) {
   EXPECT_EQ(search.cell_of({-0.5, 0}), 5u);
   EXPECT_EQ(search.cell_of({1, 10}), 19u);
   EXPECT_EQ(search.cell_of({1e300, -1e300}), 15u);  // outside: the first or last cell
+  EXPECT_EQ(MapElites::cell_along(options.descriptors[0], -0.5), 1u);
+  EXPECT_EQ(MapElites::cell_along(options.descriptors[1], 11), 4u);
 }
 
 TEST(MapElites, FillsAllCellsWithTheBest) {
@@ -80,6 +82,7 @@ TEST(Search, ContinuesFromItsSavedStateWithTheSameBits) {
     Search::Options options;
     options.axes = 3;
     options.seed = 5;
+    if (archive) options.algorithm = Search::Algorithm::map_elites;
     if (archive) options.descriptors = {{"a", 0, 1, 10}, {"b", 0, 1, 5}};
     const std::unique_ptr<Search> whole = Search::create(options);
     std::unique_ptr<Search> interrupted = Search::create(options);
@@ -89,7 +92,10 @@ TEST(Search, ContinuesFromItsSavedStateWithTheSameBits) {
       ASSERT_TRUE(interrupted->restore(state).ok());
       for (Search* search : {whole.get(), interrupted.get()}) {
         const std::vector<Vector> individuals = search->ask();
-        search->tell(individuals, evaluate(individuals));
+        std::vector<Search::Evaluated> values;
+        for (const MapElites::Evaluated& value : evaluate(individuals))
+          values.push_back({{value.fitness}, value.descriptors, value.hash});
+        search->tell(individuals, values);
       }
       ASSERT_EQ(whole->save(), interrupted->save());
     }
@@ -108,11 +114,11 @@ TEST(Search, WithoutDescriptorsFindsTheBestWithinTheRange) {
     for (const Vector& x : individuals) {
       for (const double position : x) EXPECT_TRUE(position >= 0 && position <= 1);
       // the optimum is at a corner, at the bounds of the range
-      values.push_back({x[0] + x[1] - x[2], {}, 1});
+      values.push_back({{x[0] + x[1] - x[2]}, {}, 1});
     }
     search->tell(individuals, values);
   }
-  EXPECT_NEAR(search->elites().back().fitness, 2, 1e-3);
+  EXPECT_NEAR(search->elites().back().objectives[0], 2, 1e-3);
 }
 
 TEST(Search, ReflectionFoldsIntoTheRange) {

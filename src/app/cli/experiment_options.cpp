@@ -28,7 +28,11 @@ constexpr const char* kEvolveExamples =
     "  limber evolve my.lua --maximize distance     CMA-ES: the best values, in the folder my_evolve\n"
     "  limber evolve my.lua --maximize distance --descriptor height --descriptor effort\n"
     "                                               MAP-Elites: the best for each cell of height and effort\n"
+    "  limber evolve my.lua --maximize distance --minimize effort\n"
+    "                                               NSGA-II: the best compromises of both\n"
     "  limber evolve my.lua --maximize distance --resume  continue after Ctrl+C or a crash\n"
+    "  limber evolve --play my_evolve               play the best; others are presets to recall and morph\n"
+    "  limber evolve --play my_evolve cell_3_7 --fullscreen  another elite, with options of play\n"
     "The file elites.csv in the folder has a row for each elite, with the command that plays it.\n"
     "The result doesn't depend on --jobs and interruptions.\n"
     "Exit codes: 1 the scene has an error, nothing was found, or Ctrl+C; 3 the folder can't be written.";
@@ -50,7 +54,6 @@ CLI::Validator count() {
 }
 
 void add_common(CLI::App& app, ExperimentOptions& o, const char* params) {
-  app.add_option("scene", o.scene, "The scene.")->type_name("SCENE.lua")->required();
   app.add_option("--param", o.params, params)->type_name("NAME=VALUES")->allow_extra_args(false);
   app.add_option("--seeds", o.seeds, "Seeds of each point: FIRST:LAST, or a list such as 1,2,7; default 1.")
       ->type_name("SEEDS");
@@ -73,6 +76,7 @@ void add_common(CLI::App& app, ExperimentOptions& o, const char* params) {
 void add_sweep(CLI::App& app, SweepCommand& command) {
   CLI::App* sweep = app.add_subcommand("sweep", "Run a scene with many values of its parameters; a table of results.");
   sweep->footer(kSweepExamples);
+  sweep->add_option("scene", command.common.scene, "The scene.")->type_name("SCENE.lua")->required();
   add_common(*sweep, command.common,
              "Values of a parameter: MIN:MAX:STEP, MIN:MAX/N, MIN:MAX, or a list; may be repeated. Default: the "
              "ranges of all parameters.");
@@ -97,15 +101,33 @@ void add_sweep(CLI::App& app, SweepCommand& command) {
 void add_evolve(CLI::App& app, EvolveCommand& command) {
   CLI::App* evolve = app.add_subcommand("evolve", "Search for the parameters of a scene with the best result.");
   evolve->footer(kEvolveExamples);
+  evolve
+      ->add_option("scene", command.common.scene,
+                   "The scene; with --play the number or name of an elite, by default the best.")
+      ->type_name("SCENE.lua|ELITE");
+  evolve
+      ->add_option("--play", command.play,
+                   "Play an elite of the search in this folder, with the others as presets; options of play may "
+                   "follow.")
+      ->type_name("DIR");
   add_common(*evolve, command.common,
              "Range of a parameter, MIN:MAX, or a list of values; may be repeated. Default: the ranges of all "
              "parameters.");
-  CLI::Option* maximize =
-      evolve->add_option("--maximize", command.maximize, "Search for the largest value of this result.")
-          ->type_name("RESULT");
-  evolve->add_option("--minimize", command.minimize, "Search for the smallest value of this result.")
+  evolve
+      ->add_option("--maximize", command.maximize,
+                   "Search for the largest value of this result; may be repeated, also with --minimize: then the "
+                   "result is the Pareto front.")
       ->type_name("RESULT")
-      ->excludes(maximize);
+      ->allow_extra_args(false);
+  evolve->add_option("--minimize", command.minimize, "Search for the smallest value of this result; may be repeated.")
+      ->type_name("RESULT")
+      ->allow_extra_args(false);
+  evolve
+      ->add_option("--algorithm", command.algorithm,
+                   "cma-es (one objective), map-elites (with --descriptor), nsga2 (any number of objectives); default: "
+                   "the first of these that fits.")
+      ->type_name("cma-es|map-elites|nsga2")
+      ->check(CLI::IsMember({"cma-es", "map-elites", "nsga2"}));
   evolve
       ->add_option("--descriptor", command.descriptors,
                    "A result with a range: keep the best for each of its cells (MAP-Elites); may be repeated.")
@@ -116,7 +138,7 @@ void add_evolve(CLI::App& app, EvolveCommand& command) {
       ->check(CLI::Range(1, 1000000));
   evolve
       ->add_option("--population", command.population,
-                   "Points per generation; default: 4 + 3 ln(number of parameters), with descriptors 100.")
+                   "Points per generation; default: 4 + 3 ln(number of parameters), of nsga2 40, of map-elites 100.")
       ->type_name("N")
       ->check(CLI::Range(4, 100000));
   evolve->add_option("--search-seed", command.search_seed, "Seed of the search; default 1.")

@@ -23,6 +23,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/describe.h"
 #include "app/exit_code.h"
+#include "app/experiments/evolve_play.h"
 #include "app/experiments/worker.h"
 #include "app/paths.h"
 #include "app/service/service.h"
@@ -103,6 +104,7 @@ struct CommandLine {
   struct {
     SweepCommand sweep;
     EvolveCommand evolve;
+    std::vector<std::string> play_words;  // evolve --play: options of play
   } experiments;
   std::string shell;  // completion
   bool json = false;
@@ -270,6 +272,15 @@ void split_service_words(std::vector<std::string>& args, std::vector<std::string
   args = std::move(own);
 }
 
+// moves the arguments after `evolve --play DIR [ELITE]` to `words`
+void split_elite_words(std::vector<std::string>& args, std::vector<std::string>& words) {
+  if (args.size() < 4 || args[0] != "evolve" || args[1] != "--play") return;
+  const std::size_t own = args[3].starts_with("-") ? 3 : 4;
+  if (own < args.size() && (args[own] == "-h" || args[own] == "--help")) return;
+  words.assign(args.begin() + static_cast<std::ptrdiff_t>(own), args.end());
+  args.resize(own);
+}
+
 // the usage error of CLI11; for an unknown option with a suggestion
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* command = app.get_subcommands().empty() ? &app : app.get_subcommands().front();
@@ -363,18 +374,28 @@ int print_shell_file(const CLI::App& app, const std::string& command, const Comm
   return 0;
 }
 
-int run_service(ServiceCommand& command) {
+// Parses options of play. Returns false after an error, which is printed.
+bool parse_play(std::vector<std::string> words, PlayOptions& options) {
   CLI::App play("", "play");
-  add_play_options(play, command.play);
-  std::vector<std::string> words = command.words;
+  add_play_options(play, options);
   std::reverse(words.begin(), words.end());
   try {
     play.parse(words);
   } catch (const CLI::ParseError& error) {
     print_notice("{}", usage_text(play, error));
-    return kUsageError;
+    return false;
   }
-  return service_command(command);
+  return true;
+}
+
+int run_service(ServiceCommand& command) {
+  return parse_play(command.words, command.play) ? service_command(command) : kUsageError;
+}
+
+int run_evolve(const EvolveCommand& command, const std::vector<std::string>& words) {
+  if (command.play.empty()) return evolve_command(command);
+  PlayEliteCommand play{command.play, command.common.scene, {}};
+  return parse_play(words, play.play) ? play_elite_command(play) : kUsageError;
 }
 
 struct CommandRunner {
@@ -385,7 +406,7 @@ struct CommandRunner {
 constexpr CommandRunner kRunners[] = {
     {"play", [](CommandLine& l) { return play_command(l.play); }},
     {"sweep", [](CommandLine& l) { return sweep_command(l.experiments.sweep); }},
-    {"evolve", [](CommandLine& l) { return evolve_command(l.experiments.evolve); }},
+    {"evolve", [](CommandLine& l) { return run_evolve(l.experiments.evolve, l.experiments.play_words); }},
     {"inspect", [](CommandLine& l) { return inspect_command(l.inspect); }},
     {"describe",
      [](CommandLine& l) {
@@ -421,6 +442,7 @@ int run_command(int argc, char** argv) {
   }
   std::vector<std::string> args = with_command(argc, argv);
   split_service_words(args, line.service.words);
+  split_elite_words(args, line.experiments.play_words);
   std::reverse(args.begin(), args.end());  // CLI11 reads them from the back
   try {
     app.parse(args);

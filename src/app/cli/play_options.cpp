@@ -163,7 +163,8 @@ CLI::Option* add_model_options(CLI::App& play, PlayOptions& o) {
 
 // Options of the values with which a run starts; a replay has its own.
 struct StartOptions {
-  CLI::Option *seed = nullptr, *params = nullptr, *sets = nullptr, *preset = nullptr, *cues = nullptr;
+  CLI::Option *seed = nullptr, *params = nullptr, *sets = nullptr, *preset = nullptr, *presets = nullptr,
+              *cues = nullptr;
 };
 StartOptions add_start_options(CLI::App& play, PlayOptions& o) {
   StartOptions start;
@@ -186,6 +187,9 @@ StartOptions add_start_options(CLI::App& play, PlayOptions& o) {
       ->type_name("FILE|DIR");
   start.preset = play.add_option("--preset", o.preset, "Start with this preset of the scene, applied before --set.")
                      ->type_name("NAME");
+  start.presets =
+      play.add_option("--presets", o.run.presets, "File of the presets; default: SCENE.presets.json beside the scene.")
+          ->type_name("FILE.presets.json");
   start.cues = play.add_option("--cues", o.run.cues,
                                "File of the cues; default: SCENE.cues.json beside the scene, if it exists.")
                    ->type_name("FILE.cues.json");
@@ -232,6 +236,7 @@ void add_play_options(CLI::App& command, PlayOptions& o) {
           ->excludes(start.params)
           ->excludes(start.sets)
           ->excludes(start.preset)
+          ->excludes(start.presets)
           ->excludes(start.cues);
   play->add_flag("--recover", o.recover,
                  "Restore the values that the scene had when its last run crashed; the program reports at start if "

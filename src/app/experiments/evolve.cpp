@@ -1,6 +1,5 @@
 // `limber evolve`: generations of evaluations, and the folder with the search's state and its elites.
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <memory>
@@ -10,22 +9,23 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "app/exit_code.h"
+#include "app/experiments/archive.h"
+#include "app/experiments/evolve_play.h"
 #include "app/experiments/experiment.h"
 #include "app/paths.h"
 #include "app/progress.h"
 #include "base/build_info.h"
 #include "base/log/output.h"
 #include "base/plural.h"
-#include "base/system/file.h"
+#include "base/system/clock.h"
 #include "base/system/signals.h"
 #include "base/text.h"
-#include "experiments/result_table.h"
+#include "experiments/map_elites.h"
+#include "experiments/nsga2.h"
 #include "experiments/search.h"
-#include "export/atomic_file.h"
 
 namespace limber::app {
 
@@ -33,57 +33,56 @@ namespace {
 
 namespace fs = std::filesystem;
 using experiments::Evaluation;
+using experiments::MapElites;
+using experiments::Nsga2;
 using experiments::Outcome;
 using experiments::ResultInfo;
 using experiments::Search;
 using StateJson = nlohmann::ordered_json;
 
-constexpr double kElitesInterval = 10;  // real seconds between two updates of elites.csv
-constexpr std::uintmax_t kMaxStateBytes = std::uintmax_t{1} << 30;
-
-Result<void> write_file(const std::string& path, std::string_view text) {
-  exporter::AtomicFile file(path);
-  Result<void> done = file.open();
-  if (done) done = file.write(text);
-  if (done) done = file.finish();
-  return done;
-}
+constexpr double kElitesInterval = 10;  // real seconds between two updates of the elites' files
 
 class Evolution {
  public:
-  Evolution(const EvolveCommand& command, Experiment& experiment) : command_(command), experiment_(experiment) {}
+  Evolution(const EvolveCommand& command, Experiment& experiment)
+      : command_(command), experiment_(experiment), archive_(folder_of(command)) {}
 
-  /// Finds the objective and the descriptors among the results of the scene.
-  Result<void> choose_results();
+  /// Finds the objectives and the descriptors among the results of the scene, and creates the search.
+  Result<void> prepare();
   int run();
 
  private:
+  static std::string folder_of(const EvolveCommand& command);
   Result<std::size_t> result_index(const std::string& name, const char* option) const;
-  std::vector<double> values_of(const Search::Vector& individual) const;
-  StateJson identity() const;
+  Result<void> choose_objectives();
+  Result<void> choose_descriptors();
+  Result<void> choose_algorithm();
   Result<void> open_folder();
-  Result<void> resume(const std::string& file);
+  Result<void> resume();
   Result<void> check_hash();
   Result<void> evaluate_generation(bool& canceled);
   std::vector<Search::Evaluated> evaluated() const;
   Result<void> save();
-  Result<void> write_elites() const;
-  std::string elite_line(const Search::Elite& elite) const;
+  Result<void> write_elites();
   int report(bool canceled) const;
 
   const EvolveCommand& command_;
   Experiment& experiment_;
-  std::size_t objective_ = 0;
-  double sign_ = 1;  // -1: minimize
-  std::vector<std::size_t> descriptors_;
+  Archive archive_;
+  SearchRecord record_;
+  std::vector<std::size_t> descriptors_;  // indices among the results of the scene
   std::unique_ptr<Search> search_;
-  std::string folder_;
   std::vector<Outcome> outcomes_;  // of the generation, by individual and seed
   std::uint64_t done_ = 0;
   std::uint64_t failures_ = 0;
   double elites_written_ = 0;
+  bool presets_failed_ = false;
   std::optional<Progress> progress_;
 };
+
+std::string Evolution::folder_of(const EvolveCommand& command) {
+  return command.common.out.empty() ? fs::path(command.common.scene).stem().string() + "_evolve" : command.common.out;
+}
 
 Result<std::size_t> Evolution::result_index(const std::string& name, const char* option) const {
   const std::vector<ResultInfo>& results = experiment_.scene().results;
@@ -97,16 +96,25 @@ Result<std::size_t> Evolution::result_index(const std::string& name, const char*
   return Error{fmt::format("{} {}: the scene has no such result{}", option, printable(name), name_hint(name, names))};
 }
 
-Result<void> Evolution::choose_results() {
-  const bool minimize = !command_.minimize.empty();
-  if (!minimize && command_.maximize.empty())
-    return Error{"name the result to search for: --maximize RESULT or --minimize RESULT"};
-  const Result<std::size_t> objective =
-      result_index(minimize ? command_.minimize : command_.maximize, minimize ? "--minimize" : "--maximize");
-  if (!objective) return Error{objective.error()};
-  objective_ = *objective;
-  sign_ = minimize ? -1 : 1;
-  Search::Options options;
+Result<void> Evolution::choose_objectives() {
+  const auto add = [&](const std::string& name, bool maximize) -> Result<void> {
+    const Result<std::size_t> index = result_index(name, maximize ? "--maximize" : "--minimize");
+    if (!index) return Error{index.error()};
+    if (std::ranges::find(record_.objectives, name, &Objective::name) != record_.objectives.end())
+      return Error{fmt::format("the result {} is an objective twice; name it once", name)};
+    record_.objectives.push_back({name, maximize, *index});
+    return {};
+  };
+  for (const std::string& name : command_.maximize) {
+    if (Result<void> added = add(name, true); !added) return added;
+  }
+  for (const std::string& name : command_.minimize) {
+    if (Result<void> added = add(name, false); !added) return added;
+  }
+  return {};
+}
+
+Result<void> Evolution::choose_descriptors() {
   std::uint64_t cells = 1;
   for (const std::string& name : command_.descriptors) {
     const Result<std::size_t> index = result_index(name, "--descriptor");
@@ -118,83 +126,79 @@ Result<void> Evolution::choose_results() {
                       "10 }} after its function",
                       name)};
     cells *= static_cast<std::uint64_t>(info.cells);
-    if (cells > experiments::MapElites::kMaxCells)
-      return Error{
-          fmt::format("the descriptors have more than {} cells; use fewer cells", experiments::MapElites::kMaxCells)};
+    if (cells > MapElites::kMaxCells)
+      return Error{fmt::format("the descriptors have more than {} cells; use fewer cells", MapElites::kMaxCells)};
     descriptors_.push_back(*index);
-    options.descriptors.push_back(info);
+    record_.descriptors.push_back(info);
   }
-  options.axes = experiment_.axes().size();
-  options.population = static_cast<std::size_t>(command_.population);
-  options.seed = command_.search_seed;
-  search_ = Search::create(options);
   return {};
 }
 
-std::vector<double> Evolution::values_of(const Search::Vector& individual) const {
-  std::vector<double> values;
-  for (std::size_t i = 0; i < individual.size(); i++) values.push_back(experiment_.axes()[i].at(individual[i]));
-  return values;
+Result<void> Evolution::choose_algorithm() {
+  const bool several = record_.objectives.size() > 1;
+  const bool archive = !record_.descriptors.empty();
+  if (several && archive) return Error{"--descriptor: a search for variety has one objective; leave out the others"};
+  const Search::Algorithm natural = archive   ? Search::Algorithm::map_elites
+                                    : several ? Search::Algorithm::nsga2
+                                              : Search::Algorithm::cma_es;
+  record_.algorithm = natural;
+  const std::string& wanted = command_.algorithm;
+  if (wanted == name_of(Search::Algorithm::nsga2) && !archive) record_.algorithm = Search::Algorithm::nsga2;
+  if (record_.algorithm == Search::Algorithm::nsga2 && record_.population > Nsga2::kMaxPopulation)
+    return Error{fmt::format("--population: of nsga2 at most {}", Nsga2::kMaxPopulation)};
+  if (wanted.empty() || wanted == name_of(record_.algorithm)) return {};
+  if (archive) return Error{fmt::format("--algorithm {}: only map-elites has descriptors", wanted)};
+  if (wanted == name_of(Search::Algorithm::map_elites))
+    return Error{"--algorithm map-elites: name its descriptors with --descriptor RESULT"};
+  return Error{fmt::format("--algorithm {}: it has one objective only; use nsga2 for several", wanted)};
 }
 
-// What must be equal for a search to be continued.
-StateJson Evolution::identity() const {
-  StateJson axes = StateJson::array();
-  for (const experiments::Axis& axis : experiment_.axes())
-    axes.push_back({{"name", axis.name}, {"min", axis.min}, {"max", axis.max}, {"values", axis.values}});
-  StateJson descriptors = StateJson::array();
-  for (const std::size_t index : descriptors_) {
-    const ResultInfo& info = experiment_.scene().results[index];
-    descriptors.push_back({{"name", info.name}, {"min", info.min}, {"max", info.max}, {"cells", info.cells}});
-  }
-  return {{"scene", command_.common.scene},
-          {"duration", command_.common.duration},
-          {"seeds", experiment_.seeds()},
-          {sign_ < 0 ? "minimize" : "maximize", experiment_.scene().results[objective_].name},
-          {"parameters", axes},
-          {"descriptors", descriptors},
-          {"population", search_->population()},
-          {"search_seed", command_.search_seed}};
+Result<void> Evolution::prepare() {
+  record_.scene = command_.common.scene;
+  record_.scene_path = experiment_.scene_path();
+  record_.duration = command_.common.duration;
+  record_.seeds = experiment_.seeds();
+  record_.axes = experiment_.axes();
+  record_.search_seed = command_.search_seed;
+  record_.population = static_cast<std::size_t>(command_.population);
+  Result<void> chosen = choose_objectives();
+  if (chosen) chosen = choose_descriptors();
+  if (chosen) chosen = choose_algorithm();
+  if (!chosen) return chosen;
+  search_ = Search::create(record_.options());
+  record_.population = search_->population();
+  return {};
 }
 
 Result<void> Evolution::open_folder() {
-  folder_ =
-      command_.common.out.empty() ? fs::path(command_.common.scene).stem().string() + "_evolve" : command_.common.out;
-  const std::string file = folder_ + "/state.json";
+  const std::string& folder = archive_.folder();
   std::error_code error;
-  const bool exists = fs::exists(file, error);
+  const bool exists = fs::exists(archive_.state_file(), error);
   if (command_.common.resume)
-    return exists ? resume(file)
-                  : Error{fmt::format("{}: there is no search to continue; leave out --resume", printable(folder_))};
+    return exists ? resume()
+                  : Error{fmt::format("{}: there is no search to continue; leave out --resume", printable(folder))};
   if (exists && !command_.common.overwrite)
     return Error{
         fmt::format("{} contains a search: continue it with --resume, replace it with --overwrite, or choose "
                     "another folder with --out",
-                    printable(folder_))};
-  fs::create_directories(folder_, error);
-  if (error) return Error{fmt::format("{} can't be created: {}", printable(folder_), error.message())};
+                    printable(folder))};
+  fs::create_directories(folder, error);
+  if (error) return Error{fmt::format("{} can't be created: {}", printable(folder), error.message())};
   return {};
 }
 
-Result<void> Evolution::resume(const std::string& file) try {
-  const Result<std::string> text = system::read_file(file, kMaxStateBytes);
-  if (!text) return Error{fmt::format("{}: {}", printable(file), text.error())};
-  const StateJson json = StateJson::parse(*text);
-  const StateJson& search = json.at("search");
-  const StateJson expected = identity();
-  for (const auto& [key, value] : expected.items()) {
-    if (search.contains(key) && search.at(key) == value) continue;
+Result<void> Evolution::resume() {
+  const Result<SavedSearch> saved = read_search(archive_);
+  if (!saved) return Error{fmt::format("{}; start again with --overwrite", saved.error())};
+  if (const std::string key = SearchRecord::difference(saved->record, record_.text()); !key.empty())
     return Error{
         fmt::format("{}: the search has another {}; continue it with the same options, or choose another "
                     "folder with --out",
-                    printable(folder_), key)};
-  }
-  if (Result<void> restored = search_->restore(json.at("state").get<std::string>()); !restored)
-    return Error{fmt::format("{}: {}", printable(file), restored.error())};
-  failures_ = json.at("failures");
+                    printable(archive_.folder()), key)};
+  if (Result<void> restored = search_->restore(saved->state); !restored)
+    return Error{fmt::format("{}: {}", printable(archive_.state_file()), restored.error())};
+  failures_ = saved->failures;
   return check_hash();
-} catch (const nlohmann::json::exception&) {
-  return Error{fmt::format("{}: the file is damaged; start again with --overwrite", printable(file))};
 }
 
 // Evaluates an elite again. Another hash shows that the scene or the program has changed.
@@ -202,7 +206,7 @@ Result<void> Evolution::check_hash() {
   const std::vector<Search::Elite> elites = search_->elites();
   if (elites.empty()) return {};
   const Search::Elite& elite = elites.back();
-  std::optional<Evaluation> next = Evaluation{0, experiment_.seeds().front(), values_of(elite.individual)};
+  std::optional<Evaluation> next = Evaluation{0, record_.seeds.front(), record_.values(elite.individual)};
   std::uint64_t hash = elite.hash;
   const auto ran = experiment_.dispatcher().run([&] { return std::exchange(next, std::nullopt); },
                                                 [&](const Evaluation&, const Outcome& outcome) -> Result<void> {
@@ -214,7 +218,7 @@ Result<void> Evolution::check_hash() {
   return Error{
       fmt::format("{}: an elite gives another hash now, so the scene or the program has changed; choose "
                   "another folder with --out",
-                  printable(folder_))};
+                  printable(archive_.folder()))};
 }
 
 // Evaluates all individuals with all seeds, and passes their means to the search.
@@ -228,7 +232,7 @@ Result<void> Evolution::evaluate_generation(bool& canceled) {
       [&]() -> std::optional<Evaluation> {
         if (next >= total) return {};
         const std::uint64_t number = next++;
-        return Evaluation{number, seeds[number % seeds.size()], values_of(individuals[number / seeds.size()])};
+        return Evaluation{number, seeds[number % seeds.size()], record_.values(individuals[number / seeds.size()])};
       },
       [&](const Evaluation&, const Outcome& outcome) -> Result<void> {
         outcomes_.push_back(outcome);
@@ -251,13 +255,17 @@ std::vector<Search::Evaluated> Evolution::evaluated() const {
   for (std::size_t first = 0; first < outcomes_.size(); first += seeds) {
     Search::Evaluated& value = all.emplace_back();
     value.hash = outcomes_[first].hash;
+    value.objectives.assign(record_.objectives.size(), 0.0);
     value.descriptors.assign(descriptors_.size(), 0.0);
     for (std::size_t i = first; i < first + seeds; i++) {
       const Outcome& outcome = outcomes_[i];
       const bool failed = !outcome.error.empty() || outcome.results.size() != experiment_.scene().results.size();
       const double missing = std::numeric_limits<double>::quiet_NaN();
       const auto share = static_cast<double>(seeds);
-      value.fitness += failed ? missing : sign_ * outcome.results[objective_] / share;
+      for (std::size_t k = 0; k < record_.objectives.size(); k++) {
+        const Objective& objective = record_.objectives[k];
+        value.objectives[k] += failed ? missing : objective.sign() * outcome.results[objective.index] / share;
+      }
       for (std::size_t k = 0; k < descriptors_.size(); k++)
         value.descriptors[k] += failed ? missing : outcome.results[descriptors_[k]] / share;
     }
@@ -268,45 +276,48 @@ std::vector<Search::Evaluated> Evolution::evaluated() const {
 Result<void> Evolution::save() {
   const StateJson json = {{"limber", std::string(version())},
                           {"commit", std::string(commit())},
-                          {"search", identity()},
+                          {"scene_path", record_.scene_path},
+                          {"search", StateJson::parse(record_.text())},
                           {"failures", failures_},
                           {"state", search_->save()}};
-  if (Result<void> saved = write_file(folder_ + "/state.json", json.dump(1) + "\n"); !saved) return saved;
+  if (Result<void> saved = write_archive_file(archive_.state_file(), json.dump(1) + "\n"); !saved) return saved;
   const double now = system::clock_seconds();
   if (now - elites_written_ < kElitesInterval) return {};
   elites_written_ = now;
   return write_elites();
 }
 
-std::string Evolution::elite_line(const Search::Elite& elite) const {
-  const std::vector<double> values = values_of(elite.individual);
-  std::vector<std::string> cells = {std::to_string(elite.generation), std::to_string(elite.index),
-                                    number_text(sign_ * elite.fitness)};
-  for (const double descriptor : elite.descriptors) cells.push_back(number_text(descriptor));
-  for (std::size_t i = 0; i < values.size(); i++) cells.push_back(experiment_.axes()[i].text(values[i]));
-  cells.push_back(fmt::format("{:016x}", elite.hash));
-  cells.push_back(fmt::format("\"{}\"", experiment_.play_command(values, experiment_.seeds().front())));
-  return fmt::format("{}\n", fmt::join(cells, ","));
-}
-
-Result<void> Evolution::write_elites() const {
-  std::vector<std::string> columns = {"generation", "individual", experiment_.scene().results[objective_].name};
-  for (const std::size_t index : descriptors_) columns.push_back(experiment_.scene().results[index].name);
-  for (const experiments::Axis& axis : experiment_.axes()) columns.push_back(axis.name);
-  std::string text = fmt::format("{},hash,command\n", fmt::join(columns, ","));
-  for (const Search::Elite& elite : search_->elites()) text += elite_line(elite);
-  return write_file(folder_ + "/elites.csv", text);
+// A show that plays the archive may own its presets; then they are written by a later call.
+Result<void> Evolution::write_elites() {
+  const std::vector<Search::Elite> elites = search_->elites();
+  if (Result<void> written = archive_.write_table(record_, elites); !written) return written;
+  const std::string state = state_dir();
+  const Result<void> presets = archive_.write_presets(record_, elites, state.empty() ? "" : state + "/locks");
+  if (!presets && !std::exchange(presets_failed_, true))
+    print_notice("{}: {} (reported once)", printable(archive_.preset_file()), presets.error());
+  return {};
 }
 
 int Evolution::report(bool canceled) const {
   const std::vector<Search::Elite> elites = search_->elites();
-  const auto best = std::ranges::max_element(elites, {}, &Search::Elite::fitness);
+  const bool several = record_.objectives.size() > 1;
   print_notice("{}, {} failed; {} in {}/elites.csv", counted(search_->generation(), "generation"), failures_,
-               counted(elites.size(), descriptors_.empty() ? "improvement" : "elite"), printable(folder_));
+               several ? counted(elites.size(), "elite of the Pareto front", "elites of the Pareto front")
+                       : counted(elites.size(), descriptors_.empty() ? "improvement" : "elite"),
+               printable(archive_.folder()));
   if (canceled) print_notice("stopped; continue with the same command and --resume");
   if (elites.empty()) return fail(kInputError, "no evaluation had a result; play the scene to see its errors");
-  print_result("{} {}\n{}\n", experiment_.scene().results[objective_].name, number_text(sign_ * best->fitness),
-               experiment_.play_command(values_of(best->individual), experiment_.seeds().front()));
+  // the best in each objective
+  for (std::size_t i = 0; i < record_.objectives.size(); i++) {
+    const Search::Elite& best = elites[best_of(elites, i)];
+    std::string values;
+    for (std::size_t k = 0; k < record_.objectives.size(); k++) {
+      const Objective& objective = record_.objectives[k];
+      values +=
+          fmt::format("{}{} {}", k == 0 ? "" : " ", objective.name, number_text(objective.sign() * best.objectives[k]));
+    }
+    print_result("{}\n{}\n", values, record_.play_command(best));
+  }
   return canceled ? kInputError : kSuccess;
 }
 
@@ -331,12 +342,14 @@ int Evolution::run() {
 int evolve_command(const EvolveCommand& command) {
   system::block_signals();
   start_output(OutputMode::batch);
+  if (command.common.scene.empty())
+    return fail(kUsageError, "name the scene: limber evolve SCENE.lua --maximize RESULT");
   if (command.maximize.empty() && command.minimize.empty())
     return fail(kUsageError, "name the result to search for: --maximize RESULT or --minimize RESULT");
   Experiment experiment(command.common);
   if (const std::optional<ExperimentFault> fault = experiment.open()) return fail(fault->code, fault->text);
   Evolution evolution(command, experiment);
-  if (const Result<void> chosen = evolution.choose_results(); !chosen) return fail(kUsageError, chosen.error());
+  if (const Result<void> prepared = evolution.prepare(); !prepared) return fail(kUsageError, prepared.error());
   return evolution.run();
 }
 

@@ -67,10 +67,11 @@ void Experiment::begin() {
   dispatcher_->set_setup(setup_);
 }
 
-std::string Experiment::play_command(const std::vector<double>& values, std::uint64_t seed) const {
-  std::string command = fmt::format("limber {}", shell_word(options_.scene));
-  for (std::size_t i = 0; i < axes_.size(); i++)
-    command += fmt::format(" --param {}", fmt::format("{}={}", axes_[i].name, shell_word(axes_[i].text(values[i]))));
+std::string command_that_plays(const std::string& scene, const std::vector<experiments::Axis>& axes,
+                               const std::vector<double>& values, std::uint64_t seed) {
+  std::string command = fmt::format("limber {}", shell_word(scene));
+  for (std::size_t i = 0; i < axes.size(); i++)
+    command += fmt::format(" --param {}={}", axes[i].name, shell_word(axes[i].text(values[i])));
   return command + fmt::format(" --seed {}", seed);
 }
 

@@ -21,6 +21,10 @@ struct ExperimentFault {
   std::string text;
 };
 
+/// Returns the shell command that plays a scene with these values of its parameters.
+std::string command_that_plays(const std::string& scene, const std::vector<experiments::Axis>& axes,
+                               const std::vector<double>& values, std::uint64_t seed);
+
 class Experiment {
  public:
   explicit Experiment(const ExperimentOptions& options) : options_(options) {}
@@ -30,6 +34,8 @@ class Experiment {
   /// Sets the varied parameters of all following evaluations.
   void begin();
 
+  /// The absolute path of the scene.
+  const std::string& scene_path() const { return setup_.scene; }
   const experiments::SceneInfo& scene() const { return scene_; }
   const std::vector<experiments::Axis>& axes() const { return axes_; }
   const std::vector<std::uint64_t>& seeds() const { return seeds_; }
@@ -39,7 +45,9 @@ class Experiment {
   /// True once Ctrl+C was pressed.
   bool canceled();
   /// Returns the shell command that plays the evaluation.
-  std::string play_command(const std::vector<double>& values, std::uint64_t seed) const;
+  std::string play_command(const std::vector<double>& values, std::uint64_t seed) const {
+    return command_that_plays(options_.scene, axes_, values, seed);
+  }
 
  private:
   ExperimentOptions options_;

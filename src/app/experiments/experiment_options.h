@@ -32,14 +32,15 @@ struct SweepCommand {
 int sweep_command(const SweepCommand& command);
 
 struct EvolveCommand {
-  ExperimentOptions common;  ///< `out`: a folder.
-  std::string maximize;      ///< Name of a result; one of both.
-  std::string minimize;
-  std::string algorithm;                 ///< cma-es or map-elites; empty: map-elites if there are descriptors.
+  ExperimentOptions common;           ///< `out`: a folder.
+  std::vector<std::string> maximize;  ///< Names of results.
+  std::vector<std::string> minimize;
+  std::string algorithm;                 ///< cma-es, map-elites, nsga2; empty: by objectives and descriptors.
   std::vector<std::string> descriptors;  ///< Names of results with a range.
   int generations = 100;
   int population = 0;  ///< Individuals per generation; 0: the algorithm's default.
   std::uint64_t search_seed = 1;
+  std::string play;  ///< Folder of a search to play; empty: search. `common.scene` is then the elite.
 };
 /// `limber evolve`: searches for the parameters with the largest or smallest result. Returns as sweep_command().
 int evolve_command(const EvolveCommand& command);

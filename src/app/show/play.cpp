@@ -148,6 +148,7 @@ Result<engine::EngineOptions> parse_engine(const PlayOptions& options, const std
   engine.duration = options.duration;
   engine.preset = options.preset;
   if (!options.run.cues.empty()) engine.files.cues = absolute_path(options.run.cues);
+  if (!options.run.presets.empty()) engine.files.presets = absolute_path(options.run.presets);
   engine.record = options.take.record;
   engine.replay = options.take.replay;
   engine.current_scripts = options.take.current_scripts;

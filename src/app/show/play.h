@@ -61,6 +61,7 @@ struct RunOptions {
   std::vector<std::string> sets;    ///< PATH=VALUE
   std::string out;                  ///< File or folder for recorded columns and results; empty: none.
   std::string cues;                 ///< File of the cues; empty: the one beside the scene.
+  std::string presets;              ///< File of the presets; empty: the one beside the scene.
 };
 
 /// Options of `play`, as typed.

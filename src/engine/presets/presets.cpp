@@ -200,11 +200,10 @@ Result<std::vector<Arg>> referenced_presets(const Message& message) {
 
 }  // namespace
 
-Presets::Bank Presets::read(BackgroundWriter& writer, const std::string& scene, PresetFile::WriteAccess access,
+Presets::Bank Presets::read(BackgroundWriter& writer, const std::string& path, PresetFile::WriteAccess access,
                             std::function<void(const std::string&)> on_failure) {
   Bank bank;
-  if (scene.empty()) return bank;
-  const std::string path = PresetFile::path_for(scene);
+  if (path.empty()) return bank;
   std::error_code error;
   const std::filesystem::path canonical = std::filesystem::weakly_canonical(path, error);
   bank.file = error ? path : canonical.string();

@@ -35,9 +35,9 @@ class Presets {
     std::unique_ptr<PresetSaver> saver;
     std::string file;  ///< Canonical path of the file.
   };
-  /// Loads the presets of a scene from the file next to it; logs problems. `writer` must outlive the bank. `on_failure`
-  /// is called with the reason when a save fails. May wait for the disk. [any]
-  static Bank read(BackgroundWriter& writer, const std::string& scene, PresetFile::WriteAccess access,
+  /// Loads the presets of a file (none if the path is empty); logs problems. `writer` must outlive the bank.
+  /// `on_failure` is called with the reason when a save fails. May wait for the disk. [any]
+  static Bank read(BackgroundWriter& writer, const std::string& path, PresetFile::WriteAccess access,
                    std::function<void(const std::string&)> on_failure);
   /// Replaces the bank, unless the same file is open already. Returns the bank that isn't used, which must be destroyed
   /// on a thread that may wait for the disk. [sim]

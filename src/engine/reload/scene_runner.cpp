@@ -218,10 +218,12 @@ Result<void> SceneRunner::apply_initial_overrides() {
 }
 
 Presets::Bank SceneRunner::read_presets(const std::string& scene) {
-  PresetFile::WriteAccess access =
-      PresetFile::write_access_for(scene, show_.options.files.locks, !show_.options.recovery.folder.empty());
+  const std::string& given = show_.options.files.presets;
+  PresetFile::WriteAccess access = PresetFile::write_access_for(
+      given.empty() ? scene : given, show_.options.files.locks, !show_.options.recovery.folder.empty());
+  const std::string path = !given.empty() ? given : scene.empty() ? "" : PresetFile::path_for(scene);
   // called by the thread that writes the file: not through Output, which belongs to the simulation thread
-  return Presets::read(show_.writer, scene, std::move(access), [&link = show_.link](const std::string& why) {
+  return Presets::read(show_.writer, path, std::move(access), [&link = show_.link](const std::string& why) {
     link.push_out({Outgoing::Destination::error, {}, error_message("/preset/store", why)});
   });
 }
