@@ -42,6 +42,8 @@ constexpr std::array kUnits = {
     Unit{"kg·m/s", "kilogram meter per second"},
     Unit{"kg·m²/s", "kilogram meter squared per second"},
     Unit{"J", "joule"},
+    Unit{"beats", "beats of musical time"},
+    Unit{"beats/min", "beats per minute"},
     Unit{"× real time", "simulated seconds per real second"},
     Unit{"hsb", "hue, saturation, brightness"},
 };
