@@ -103,9 +103,10 @@ std::string port_name_fault(const std::string& text) {
 }
 
 void add_midi(CLI::App& play, MidiChoices& o) {
-  play.add_option("--midi", o.use,
-                  "MIDI devices to open: those with this text in their name; without a text, all. By default they are "
-                  "opened when the scene has a map, SCENE.midi.json, or a control is to be learned.")
+  play.add_option_function<std::string>(
+          "--midi", [&o](const std::string& text) { o.use = text.empty() ? "all" : text; },
+          "MIDI devices to open: those with this text in their name; without a text, all. By default they are "
+          "opened when the scene has a map, SCENE.midi.json, or a control is to be learned.")
       ->type_name("all|NAME|off")
       ->expected(0, 1)
       ->check(CLI::Validator([](std::string& text) { return port_name_fault(text); }, "", "name"));

@@ -128,7 +128,7 @@ midi::MidiOptions parse_midi(const PlayOptions& options) {
   const bool asked = !chosen.use.empty() || !chosen.clock_from.empty() || !chosen.clock_to.empty();
   midi.use = asked ? Use::on : options.fast || !options.take.replay.empty() ? Use::off : Use::on_demand;
   if (chosen.use == "off") midi.use = Use::off;
-  if (chosen.use != "all" && chosen.use != "off" && chosen.use != "true") midi.ports = chosen.use;
+  if (chosen.use != "all" && chosen.use != "off") midi.ports = chosen.use;
   midi.clock_from = chosen.clock_from;
   midi.clock_to = chosen.clock_to;
   return midi;

@@ -152,7 +152,7 @@ class OscPanel : public Panel {
 };
 
 [[maybe_unused]] const bool kOscPanel = register_panel_type<OscPanel>({.name = "osc",
-                                                                       .title = "OSC monitor",
+                                                                       .title = "OSC",
                                                                        .wide_slot = PanelSlot::bottom_middle,
                                                                        .compact_slot = PanelSlot::bottom,
                                                                        .order = 2});
