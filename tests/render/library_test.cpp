@@ -12,7 +12,7 @@ namespace limber::render::test {
 namespace {
 
 // A white ball at (0.5, 0, 1) in front of nothing, and a static camera of the scene.
-constexpr const char* kBall = R"(
+constexpr const char* kWhiteBall = R"(
   sim.gravity = vec3(0, 0, 0)
   visuals.look.floor, visuals.look.grid, visuals.look.fog = false, 0, 0
   visuals.background = vec3(0, 0, 0)
@@ -21,17 +21,17 @@ constexpr const char* kBall = R"(
   sim:add_body("ball"):add_part("ball", shape, { position = vec3(0.5, 0, 1) })
   visuals.camera:look_at(vec3(0, -4, 1), vec3(0, 0, 1))
 )";
-constexpr int kWidth = 200;
-constexpr int kHeight = 100;
+constexpr int kImageWidth = 200;
+constexpr int kImageHeight = 100;
 
 class LimberRender : public testing::Test {
  protected:
   LimberRender() {
     limber_options options = LIMBER_OPTIONS;
-    options.text = kBall;
+    options.text = kWhiteBall;
     EXPECT_EQ(limber_create(&options, &sim_), LIMBER_OK) << limber_last_error();
-    image_.width = kWidth;
-    image_.height = kHeight;
+    image_.width = kImageWidth;
+    image_.height = kImageHeight;
     image_.quality = LIMBER_QUALITY_LOW;
   }
   ~LimberRender() override { limber_destroy(sim_); }
@@ -39,16 +39,16 @@ class LimberRender : public testing::Test {
   LimberRender& operator=(const LimberRender&) = delete;
 
   std::vector<std::uint8_t> draw() const {
-    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kWidth * kHeight));
+    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kImageWidth * kImageHeight));
     EXPECT_EQ(limber_render(sim_, &image_, pixels.data(), pixels.size()), LIMBER_OK) << limber_last_error();
     return pixels;
   }
   // Brightness of the pixel that shows a point `right` and `up` of the image's center at a distance of 4 m.
   static int brightness(const std::vector<std::uint8_t>& pixels, double right, double up, double fovy = 40) {
-    const double focal = kHeight / 2.0 / std::tan(fovy / 2 * M_PI / 180);
-    const int x = static_cast<int>(std::lround(kWidth / 2.0 + focal * right / 4));
-    const int y = static_cast<int>(std::lround(kHeight / 2.0 - focal * up / 4));
-    const std::size_t at = 3 * static_cast<std::size_t>(y * kWidth + x);
+    const double focal = kImageHeight / 2.0 / std::tan(fovy / 2 * M_PI / 180);
+    const int x = static_cast<int>(std::lround(kImageWidth / 2.0 + focal * right / 4));
+    const int y = static_cast<int>(std::lround(kImageHeight / 2.0 - focal * up / 4));
+    const std::size_t at = 3 * static_cast<std::size_t>(y * kImageWidth + x);
     return pixels[at] + pixels[at + 1] + pixels[at + 2];
   }
   std::uint64_t hash() const {
@@ -118,7 +118,7 @@ TEST_F(LimberRender, ChangesNeitherTheStateNorTheCurrentContext) {
 }
 
 TEST_F(LimberRender, WrongArgumentsAreRejected) {
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kWidth * kHeight));
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kImageWidth * kImageHeight));
   const auto reject = [&](const char* text, std::size_t size) {
     EXPECT_EQ(limber_render(sim_, &image_, pixels.data(), size), LIMBER_INVALID_ARGUMENT);
     EXPECT_NE(std::string(limber_last_error()).find(text), std::string::npos) << limber_last_error();
