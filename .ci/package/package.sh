@@ -218,7 +218,7 @@ TEXT
 }
 
 make_python_package() {
-  local stage=$package_out/python_stage version depends file packages doc
+  local stage=$package_out/python_stage version depends file files packages doc
   for file in dpkg-deb dpkg-shlibdeps; do need_program $file dpkg-dev; done
   build_python
   version=$(package_version)-1~$(release_tag)
@@ -230,8 +230,8 @@ make_python_package() {
   cp .ci/package/copyright "$doc/copyright"
   cp python/examples/*.py "$doc/examples/"
   debian_changelog "$version" | gzip -9n >"$doc/changelog.Debian.gz"
-  depends=$(library_dependencies -lpython_stage/usr/lib/python3/dist-packages/limber/lib \
-    python_stage/usr/lib/python3/dist-packages/limber/{_core.*.so,lib/liblimber.so.*.*}) || exit
+  files=$(cd "$package_out" && echo python_stage/usr/lib/python3/dist-packages/limber/{_core.*.so,lib/liblimber.so.*.*})
+  depends=$(library_dependencies -lpython_stage/usr/lib/python3/dist-packages/limber/lib $files) || exit
   python_control "$version" "$stage" "$depends" >"$stage/DEBIAN/control"
   # Python compiles the modules after the installation, as Debian's other packages do
   cat >"$stage/DEBIAN/postinst" <<'TEXT'

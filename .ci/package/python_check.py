@@ -6,7 +6,7 @@ import sys
 
 import limber
 
-folder, expected = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2].split()[-1]
+folder, expected = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2].split()[1]
 module = pathlib.Path(limber.__file__).resolve()
 assert module.is_relative_to(folder), module
 scenes = limber.data_folder()

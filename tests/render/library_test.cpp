@@ -12,7 +12,7 @@ namespace limber::render::test {
 namespace {
 
 // A white ball at (0.5, 0, 1) in front of nothing, and a static camera of the scene.
-constexpr const char* kBall = R"(
+constexpr const char* kWhiteBall = R"(
   sim.gravity = vec3(0, 0, 0)
   visuals.look.floor, visuals.look.grid, visuals.look.fog = false, 0, 0
   visuals.background = vec3(0, 0, 0)
@@ -23,15 +23,19 @@ constexpr const char* kBall = R"(
 )";
 constexpr int kPictureWidth = 200;
 constexpr int kPictureHeight = 100;
+constexpr int kImageWidth = 200;
+constexpr int kImageHeight = 100;
 
 class LimberRender : public testing::Test {
  protected:
   LimberRender() {
     limber_options options = LIMBER_OPTIONS;
-    options.text = kBall;
+    options.text = kWhiteBall;
     EXPECT_EQ(limber_create(&options, &sim_), LIMBER_OK) << limber_last_error();
     image_.width = kPictureWidth;
     image_.height = kPictureHeight;
+    image_.width = kImageWidth;
+    image_.height = kImageHeight;
     image_.quality = LIMBER_QUALITY_LOW;
   }
   ~LimberRender() override { limber_destroy(sim_); }
@@ -40,6 +44,7 @@ class LimberRender : public testing::Test {
 
   std::vector<std::uint8_t> draw() const {
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kPictureWidth * kPictureHeight));
+    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kImageWidth * kImageHeight));
     EXPECT_EQ(limber_render(sim_, &image_, pixels.data(), pixels.size()), LIMBER_OK) << limber_last_error();
     return pixels;
   }
@@ -49,6 +54,10 @@ class LimberRender : public testing::Test {
     const int x = static_cast<int>(std::lround(kPictureWidth / 2.0 + focal * right / 4));
     const int y = static_cast<int>(std::lround(kPictureHeight / 2.0 - focal * up / 4));
     const std::size_t at = 3 * static_cast<std::size_t>(y * kPictureWidth + x);
+    const double focal = kImageHeight / 2.0 / std::tan(fovy / 2 * M_PI / 180);
+    const int x = static_cast<int>(std::lround(kImageWidth / 2.0 + focal * right / 4));
+    const int y = static_cast<int>(std::lround(kImageHeight / 2.0 - focal * up / 4));
+    const std::size_t at = 3 * static_cast<std::size_t>(y * kImageWidth + x);
     return pixels[at] + pixels[at + 1] + pixels[at + 2];
   }
   std::uint64_t hash() const {
@@ -119,6 +128,7 @@ TEST_F(LimberRender, ChangesNeitherTheStateNorTheCurrentContext) {
 
 TEST_F(LimberRender, WrongArgumentsAreRejected) {
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kPictureWidth * kPictureHeight));
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kImageWidth * kImageHeight));
   const auto reject = [&](const char* text, std::size_t size) {
     EXPECT_EQ(limber_render(sim_, &image_, pixels.data(), size), LIMBER_INVALID_ARGUMENT);
     EXPECT_NE(std::string(limber_last_error()).find(text), std::string::npos) << limber_last_error();
