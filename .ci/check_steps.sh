@@ -9,7 +9,6 @@ failed=0
 # themselves out (tests/support/skip.h).
 asan_leaves_out="app architecture bench first_minutes long"
 tsan_takes="base engine osc lighting link midi console oscquery stress"
-tsan_takes="base engine osc lighting midi console oscquery stress"
 # The modules with the longest tests. They start first, in two halves, to keep all cores busy until the end.
 slow_modules="app engine scenes script sim"
 # Modules that .ci/arm64 runs with qemu. The others do not depend on the architecture, take too long (engine, panel: minutes

@@ -21,8 +21,6 @@ constexpr const char* kWhiteBall = R"(
   sim:add_body("ball"):add_part("ball", shape, { position = vec3(0.5, 0, 1) })
   visuals.camera:look_at(vec3(0, -4, 1), vec3(0, 0, 1))
 )";
-constexpr int kPictureWidth = 200;
-constexpr int kPictureHeight = 100;
 constexpr int kImageWidth = 200;
 constexpr int kImageHeight = 100;
 
@@ -32,8 +30,6 @@ class LimberRender : public testing::Test {
     limber_options options = LIMBER_OPTIONS;
     options.text = kWhiteBall;
     EXPECT_EQ(limber_create(&options, &sim_), LIMBER_OK) << limber_last_error();
-    image_.width = kPictureWidth;
-    image_.height = kPictureHeight;
     image_.width = kImageWidth;
     image_.height = kImageHeight;
     image_.quality = LIMBER_QUALITY_LOW;
@@ -43,17 +39,12 @@ class LimberRender : public testing::Test {
   LimberRender& operator=(const LimberRender&) = delete;
 
   std::vector<std::uint8_t> draw() const {
-    std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kPictureWidth * kPictureHeight));
     std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kImageWidth * kImageHeight));
     EXPECT_EQ(limber_render(sim_, &image_, pixels.data(), pixels.size()), LIMBER_OK) << limber_last_error();
     return pixels;
   }
   // Brightness of the pixel that shows a point `right` and `up` of the image's center at a distance of 4 m.
   static int brightness(const std::vector<std::uint8_t>& pixels, double right, double up, double fovy = 40) {
-    const double focal = kPictureHeight / 2.0 / std::tan(fovy / 2 * M_PI / 180);
-    const int x = static_cast<int>(std::lround(kPictureWidth / 2.0 + focal * right / 4));
-    const int y = static_cast<int>(std::lround(kPictureHeight / 2.0 - focal * up / 4));
-    const std::size_t at = 3 * static_cast<std::size_t>(y * kPictureWidth + x);
     const double focal = kImageHeight / 2.0 / std::tan(fovy / 2 * M_PI / 180);
     const int x = static_cast<int>(std::lround(kImageWidth / 2.0 + focal * right / 4));
     const int y = static_cast<int>(std::lround(kImageHeight / 2.0 - focal * up / 4));
@@ -127,7 +118,6 @@ TEST_F(LimberRender, ChangesNeitherTheStateNorTheCurrentContext) {
 }
 
 TEST_F(LimberRender, WrongArgumentsAreRejected) {
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kPictureWidth * kPictureHeight));
   std::vector<std::uint8_t> pixels(static_cast<std::size_t>(3 * kImageWidth * kImageHeight));
   const auto reject = [&](const char* text, std::size_t size) {
     EXPECT_EQ(limber_render(sim_, &image_, pixels.data(), size), LIMBER_INVALID_ARGUMENT);
