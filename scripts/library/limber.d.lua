@@ -753,6 +753,30 @@ function tendon_:remove() end
 ---@field [integer] tendon
 ---@overload fun(self: body, wanted?: string|tendon|(string|tendon)[]): fun(): tendon, integer
 
+-- Musical time.
+
+---Musical time. Beats pass with simulated time at the tempo; another program or taps can lead it.
+---@class clock
+---@field alive boolean # read-only. Always true.
+---@field tempo number # beats/min, 20 .. 999, default 120. Tempo to play at, until another program or taps set another one (see current_tempo).
+---@field beats_per_bar integer # 1 .. 64, default 4. Beats in a bar.
+---@field playing boolean # Beats pass.
+---@field beat number # read-only, beats. Beats since the start of the scene, or since the start of the program that leads the clock, with the fraction of the present one.
+---@field bar integer # read-only. Complete bars since beat 0.
+---@field phase number # read-only. Position in the bar: 0 at its start, up to 1 at its end.
+---@field current_tempo number # read-only, beats/min. The tempo at which the beats pass.
+---@field synced boolean # read-only. True while another program or device leads the clock.
+local clock_ = {}
+
+---Starts at beat 0.
+function clock_:start() end
+
+---Follows another clock: its beat now, and its tempo. A difference of up to half a beat is corrected within a second, a larger one at once.
+function clock_:sync(beat, tempo) end
+
+---Taps a beat: two or more, at most 3 s apart, set the tempo, and each is the nearest full beat.
+function clock_:tap() end
+
 -- Lighting fixtures.
 
 ---Adds a lighting fixture. Without an `address` it gets the first channels of its universe that are free. Its values
@@ -1057,6 +1081,7 @@ function policy_:reset() end
 ---@class sim
 ---@field alive boolean # read-only. Always true.
 ---@field bodies body_list # read-only. All bodies, in stream order; call it to iterate over those that match a pattern.
+---@field clock clock # read-only. Musical time: beats, bars and tempo.
 ---@field collision_groups string[] # Names of the 16 collision groups, in order of their bits; set at the top level.
 ---@field fixtures fixture_list # read-only. All lighting fixtures, in the order of their creation; call it to iterate over those that match a pattern.
 ---@field gears gear_list # read-only. All gears, in stream order; call it to iterate over those that match a pattern.
@@ -1275,6 +1300,12 @@ function sim:on_start(f) end
 ---Calls f in each tick, before the physics step.
 ---@param f fun(dt: number) # The function to call; dt is the time step in s.
 function sim:on_step(f) end
+
+---Calls f on each beat of `sim.clock`, before the physics step. With `every`: at each multiple of that many beats, such
+---as 0.25 for sixteenth notes, or 4. Not more often than once in a tick.
+---@param f fun(beat: number) # The function to call; beat is the beat that was reached.
+---@param every? number # Beats, from 1/64 to 4096. Default 1.
+function sim:on_beat(f, every) end
 
 ---Calls f when a part with `report_contacts` begins to touch another: impulse in N·s, position in m.
 ---@param f fun(part: part, other: part, impulse: number, position: vec3) # The function to call.

@@ -33,7 +33,8 @@ TEST(ShowScene, TheHeadsFollowTheHands) {
   for (int tick = 0; tick < 60; tick++) {
     player.play(1.0 / 60);
     for (const auto& fixture : fixtures) {
-      const auto* const hand = static_cast<const sim::Part*>(player.world().store().object(fixture->targets()[0]));
+      const sim::FixtureTarget& target = fixture->targets()[0];
+      const sim::Part* const hand = player.body(target.body).find_part(target.part);
       const std::string path = "/lighting/fixture/" + fixture->name();
       const auto vec = [&](const char* name) {
         return Vec3(player.value(path + name, 0), player.value(path + name, 1), player.value(path + name, 2));

@@ -46,7 +46,9 @@ TEST(Clock, CountsBeatsAndBars) {
     EXPECT_NEAR(s.value("phase"), beat / 3 - std::floor(tick / 90), 1e-8);
     EXPECT_EQ(s.clock().reached(1).has_value(), tick % 30 == 0) << tick;
     EXPECT_EQ(s.clock().reached(0.5).has_value(), tick % 15 == 0) << tick;
-    if (tick % 30 == 0) EXPECT_EQ(s.clock().reached(1), tick / 30);
+    if (tick % 30 == 0) {
+      EXPECT_EQ(s.clock().reached(1), tick / 30);
+    }
   }
 }
 
@@ -126,7 +128,9 @@ TEST(Clock, FollowsATempoRampWithJitter) {
     if (tick % 6 == 0) s.call("sync", {beat - late, tempo});
     s.ticks(1);
     beat += tempo / 3600;
-    if (tick > 60) EXPECT_NEAR(s.value("beat"), beat, 0.03);
+    if (tick > 60) {
+      EXPECT_NEAR(s.value("beat"), beat, 0.03);
+    }
     EXPECT_GT(s.value("beat"), last);
     last = s.value("beat");
   }

@@ -34,6 +34,7 @@ struct Cue {
   std::vector<Message> messages;
   CueStart at = CueStart::now;
   std::string when;              ///< Address; its message starts this cue if it is the next one. Empty: none.
+  std::optional<double> begin;   ///< Of the first cue: it starts by itself at this simulated time (s) of the scene.
   std::optional<double> follow;  ///< Simulated seconds from this cue to the next one; nothing: it waits for GO.
   std::string note;              ///< For people.
 };
