@@ -115,7 +115,7 @@ TEST(LightingOptions, ErrorsNameTheSettingAndTheFix) {
   EXPECT_EQ(fault("sacn,exit=off"), "--lights-out 'sacn,exit=off': exit must be blackout or hold, got 'off'");
   EXPECT_EQ(fault("sacn,prio=3"),
             "--lights-out 'sacn,prio=3': unknown setting 'prio'; there are: rate, priority, sync, "
-            "interface, name, exit, panic");
+            "interface, name, universe, exit, panic");
 }
 
 }  // namespace
