@@ -1,7 +1,7 @@
 -- A show of ninety seconds: a dancer between two rings of eight arms, and sixteen moving heads. The arms sway, bow to
 -- the dancer and strike with the beat; the heads follow her hands or the tips of the arms.
 --
--- F5 starts the first cue, and the others follow by themselves. They are in show.cues.json, their looks in
+-- The cues follow one another by themselves; F5 starts the next one early. They are in show.cues.json, their looks in
 -- show.presets.json; both can be edited while the show plays. F7 taps the tempo, --link takes it from other programs,
 -- Ctrl+L sends the values of the heads to real lights. docs/howto/clock.md and docs/howto/cues.md explain the rest.
 

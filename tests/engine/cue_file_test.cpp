@@ -65,6 +65,7 @@ TEST(CueFile, ErrorsNameTheCueAndTheField) {
       {R"("name": "b", "follow": 1e9)", "cue 2 'b': follow: must be"},
       {R"("name": "b", "folow": 1)", "cue 2 'b': there is no field 'folow'; did you mean 'follow'?"},
       {R"("name": "b", "at": "noon")", "cue 2 'b': at: must be \"now\", \"beat\" or \"bar\", not 'noon'"},
+      {R"("name": "b", "begin": 1)", "cue 2 'b': begin: only the first cue has it"},
       {R"("name": "b", "when": "drum")", "cue 2 'b': when: 'drum' is not an address"},
       {R"("name": "b", "when": "/cue/go")", "cue 2 'b': when: a cue can't control the cue list"},
       {R"("name": "b", "messages": "/x")", "cue 2 'b': messages: must be a list"},

@@ -348,6 +348,28 @@ TEST_F(BeatCueShow, FollowsOnTheBeat) {
   expect_replay(recorded.record, hash);
 }
 
+TEST_F(CueShow, TheFirstCueBeginsByItself) {
+  write(R"({"limber cues": 1, "cues": [{"name": "a", "begin": 0.5, "messages": [["/scene/wind", 2]]}, {"name": "b"}]})");
+  EngineOptions recorded = options();
+  recorded.record = folder.path("begin.take");
+  std::uint64_t hash = 0;
+  {
+    Show show(recorded);
+    show.ticks(30);
+    EXPECT_EQ(current(show), 0);
+    show.ticks(1);
+    EXPECT_EQ(current(show), 1);
+    EXPECT_EQ(show.read("/scene/wind"), 2);
+    show.ticks(100);
+    EXPECT_EQ(current(show), 1) << "only once";
+    hash = show.engine.state_hash();
+    show.engine.end_take();
+    show.engine.finish_saving();
+  }
+  folder.remove("scripts/scene.cues.json");
+  expect_replay(recorded.record, hash);
+}
+
 TEST_F(CueShow, AMessageStartsTheCueThatWaitsForIt) {
   write(R"({"limber cues": 1, "cues": [
     {"name": "a", "when": "/drum"}, {"name": "b", "when": "/scene/wind"}, {"name": "c"}]})");

@@ -11,14 +11,12 @@ namespace {
 
 TEST(ShowScene, ItsCuesFollowAtBars) {
   Player player("show.lua");
-  player.play(0.5);
-  player.send("/cue/go", {});
   player.play(1.0 / 60);
   EXPECT_EQ(player.value("/cue/current"), 1);
-  // 12 s after its start, at the next of the bars of 2 s
-  player.play(13);
+  // 12 s after its start, at the bar that is reached then
+  player.play(11.9);
   EXPECT_EQ(player.value("/cue/current"), 1);
-  player.play(0.7);
+  player.play(2.2);
   EXPECT_EQ(player.value("/cue/current"), 2);
   player.play(8.5);
   EXPECT_NEAR(player.value("/scene/light"), 0.5, 1e-9) << "the preset of the second cue";
@@ -48,6 +46,7 @@ TEST(ShowScene, TheHeadsFollowTheHands) {
 // Without sway and energy, a strike is in each arm once in four beats.
 TEST(ShowScene, TheArmsStrikeWithTheBeat) {
   Player player("show.lua");
+  player.send("/cue/pause", {});
   player.play(0.1);
   for (const auto& [address, value] : {std::pair{"/scene/sway", 0.0}, {"/scene/energy", 0.0}, {"/scene/strike", 1.0}})
     player.send(address, {Arg::of(value)});

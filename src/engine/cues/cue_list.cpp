@@ -22,8 +22,8 @@ using CueJson = nlohmann::json;
 constexpr const char* kCueVersionKey = "limber cues";
 constexpr int kCueVersion = 1;
 constexpr int kMaxCueDepth = 8;  // of nested values
-constexpr std::array<std::string_view, 9> kCueFields = {"name", "preset", "time",   "easing", "messages",
-                                                        "at",   "when",   "follow", "note"};
+constexpr std::array<std::string_view, 10> kCueFields = {"name", "preset", "time",  "easing", "messages",
+                                                         "at",   "when",   "begin", "follow", "note"};
 constexpr std::array<std::string_view, 3> kCueStarts = {"now", "beat", "bar"};  // in the order of CueStart
 
 // Parses one cue. Errors begin with the name of the field.
@@ -33,7 +33,8 @@ class CueParser {
     if (!json.is_object()) return Error{"must be an object, such as {\"name\": \"opening\"}"};
     if (const Result<void> known = check_fields(json); !known) return Error{known.error()};
     for (const Result<void>& field :
-         {parse_name(json), parse_preset(json), parse_messages(json), parse_start(json), parse_follow(json)}) {
+         {parse_name(json), parse_preset(json), parse_messages(json), parse_start(json),
+          parse_seconds(json, "follow", cue_.follow), parse_seconds(json, "begin", cue_.begin)}) {
       if (!field) return Error{field.error()};
     }
     return std::move(cue_);
@@ -103,13 +104,14 @@ class CueParser {
     return {};
   }
 
-  Result<void> parse_follow(const CueJson& json) {
-    const CueJson* const follow = find(json, "follow");
-    if (follow == nullptr) return {};
-    const double seconds = follow->is_number() ? follow->get<double>() : -1;
+  static Result<void> parse_seconds(const CueJson& json, const char* field, std::optional<double>& to) {
+    const CueJson* const value = find(json, field);
+    if (value == nullptr) return {};
+    const double seconds = value->is_number() ? value->get<double>() : -1;
     if (!(seconds >= 0 && seconds <= Cue::kMaxFollowSeconds))
-      return Error{fmt::format("follow: must be a number of seconds from 0 to {}, or null", Cue::kMaxFollowSeconds)};
-    cue_.follow = seconds;
+      return Error{
+          fmt::format("{}: must be a number of seconds from 0 to {}, or null", field, Cue::kMaxFollowSeconds)};
+    to = seconds;
     return {};
   }
 
@@ -197,6 +199,7 @@ Result<CueList> parse_cues(std::string_view text) {
     if (!cue) return Error{fmt::format("{}: {}", place, cue.error())};
     if (std::ranges::find(cues, cue->name, &Cue::name) != cues.end())
       return Error{fmt::format("{}: name: another cue has the same name", place)};
+    if (cue->begin && !cues.empty()) return Error{fmt::format("{}: begin: only the first cue has it", place)};
     cues.push_back(std::move(*cue));
   }
   return cues;

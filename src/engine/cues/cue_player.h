@@ -52,6 +52,10 @@ class CuePlayer {
   Result<std::size_t> target(const CueRequest& request) const;
   /// True if the next cue starts by itself now.
   bool due() const { return state_.ticks == 0U && !state_.paused && position() < list_->size(); }
+  /// True if the first cue starts by itself at this time of the scene.
+  bool begins(double time) const {
+    return state_ == CueState{} && !list_->empty() && list_->front().begin && time + 1e-9 >= *list_->front().begin;
+  }
   /// Counts one tick.
   void advance() {
     if (!state_.paused && state_.ticks && *state_.ticks > 0) --*state_.ticks;

@@ -50,7 +50,7 @@ void CueRunner::run_due(bool may_step, EditScope& edit_scope, InputSource& sourc
   if (waits && beat_reached((*show_.cues.list())[waiting - 1].at)) {
     edit_scope.begin({CommandSource::script});
     run(waiting - 1, source);
-  } else if (show_.cues.due()) {
+  } else if (show_.cues.due() || show_.cues.begins(session.world.time())) {
     edit_scope.begin({CommandSource::script});
     start(show_.cues.position(), source);
   }
