@@ -17,7 +17,8 @@
 namespace limber::app::test {
 namespace {
 
-// Lines that a program has written to a file, when there are `count`, or after a minute. Calls `meanwhile` while it waits.
+// Lines that a program has written to a file, when there are `count`, or after a minute. Calls `meanwhile` while it
+// waits.
 std::multiset<std::string> lines_of(
     const std::string& file, std::size_t count, const std::function<void()>& meanwhile = [] {}) {
   const auto limit = std::chrono::steady_clock::now() + std::chrono::minutes(1);

@@ -42,9 +42,10 @@ constexpr std::array kModules{
     Module{"lib", "properties model sim script engine ui/render"},
     // designs, searches and the distribution of evaluations, without access to the scene
     Module{"experiments", ""},
-    Module{"app",
-           "properties model sim script engine net/osc net/lighting net/link net/midi net/console net/oscquery ui/render "
-           "ui/panel export experiments"},
+    Module{
+        "app",
+        "properties model sim script engine net/osc net/lighting net/link net/midi net/console net/oscquery ui/render "
+        "ui/panel export experiments"},
 };
 
 /// Folders that only files of their own module include.

@@ -163,8 +163,7 @@ TEST(CueEdit, RejectsWrongRequestsAndFiles) {
   EXPECT_EQ(edited(file, "/cue/remove", {Arg::of("on")}), "error: there is no cue 'on'; did you mean 'one'?");
   EXPECT_EQ(edited(file, "/cue/remove", {Arg::of(2.0)}), "error: the number of a cue must be 1 to 1, got 2");
   EXPECT_EQ(edited(file, "/cue/remove", {}), "error: takes the name or the number of a cue");
-  EXPECT_EQ(edited(file, "/cue/add", {Arg::of(3.0)}),
-            "error: takes a name, and the name of a preset if it has one");
+  EXPECT_EQ(edited(file, "/cue/add", {Arg::of(3.0)}), "error: takes a name, and the name of a preset if it has one");
   EXPECT_EQ(edited(file, "/cue/add", {Arg::of("one")}), "error: cue 1 'one': name: another cue has the same name");
   EXPECT_EQ(edited(file, "/cue/move", {Arg::of("one")}), "error: takes a cue, and the number that it will have");
   EXPECT_EQ(edited("{", "/cue/add", {Arg::of("two")}).substr(0, 22), "error: line 1: not val");

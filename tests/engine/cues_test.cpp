@@ -349,7 +349,8 @@ TEST_F(BeatCueShow, FollowsOnTheBeat) {
 }
 
 TEST_F(CueShow, TheFirstCueBeginsByItself) {
-  write(R"({"limber cues": 1, "cues": [{"name": "a", "begin": 0.5, "messages": [["/scene/wind", 2]]}, {"name": "b"}]})");
+  write(
+      R"({"limber cues": 1, "cues": [{"name": "a", "begin": 0.5, "messages": [["/scene/wind", 2]]}, {"name": "b"}]})");
   EngineOptions recorded = options();
   recorded.record = folder.path("begin.take");
   std::uint64_t hash = 0;

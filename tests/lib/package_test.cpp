@@ -107,15 +107,15 @@ TEST(LimberPackage, PythonPackageKeepsItsRules) {
 TEST(LimberPackage, WheelWorksWithoutTheBuildFolder) {
   const TempFolder folder;
   const std::string site = folder.path() + "/site";
-  std::string wheel = succeed(
-      {LIMBER_PYTHON, LIMBER_SOURCE_DIR "/.ci/package/wheel.py", LIMBER_BUILD, folder.path() + "/wheels"});
+  std::string wheel =
+      succeed({LIMBER_PYTHON, LIMBER_SOURCE_DIR "/.ci/package/wheel.py", LIMBER_BUILD, folder.path() + "/wheels"});
   ASSERT_TRUE(wheel.ends_with("-linux_x86_64.whl\n") || wheel.ends_with("-linux_aarch64.whl\n")) << wheel;
   wheel.pop_back();
   succeed({LIMBER_PYTHON, "-m", "zipfile", "-e", wheel, site});
   const std::string hash =
       succeed({LIMBER_PROGRAM, "scripts/arms.lua", "--fast", "--hash", "--ticks", "120", "--seed", "3"});
-  EXPECT_EQ(succeed({"env", "-C", folder.path(), "PYTHONPATH=" + site, "PYTHONDONTWRITEBYTECODE=1", LIMBER_PYTHON,
-                     "-W", "error", LIMBER_SOURCE_DIR "/.ci/package/python_check.py", site, hash}),
+  EXPECT_EQ(succeed({"env", "-C", folder.path(), "PYTHONPATH=" + site, "PYTHONDONTWRITEBYTECODE=1", LIMBER_PYTHON, "-W",
+                     "error", LIMBER_SOURCE_DIR "/.ci/package/python_check.py", site, hash}),
             "ok\n");
   // every file has its hash in RECORD, and none is missing there
   succeed({LIMBER_PYTHON, "-c", R"(

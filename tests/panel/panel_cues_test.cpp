@@ -86,8 +86,8 @@ TEST(PanelCues, CuesAreEditedInTheirMenu) {
   panel.click("cues.add");
   panel.type("lift");
   panel.click("cues.add_now");
-  EXPECT_EQ(requests, (std::vector<std::string>{"/cue/move 3 2", "/cue/remove 3", "/cue/set 1 at bar",
-                                                "/cue/add lift lift"}));
+  EXPECT_EQ(requests,
+            (std::vector<std::string>{"/cue/move 3 2", "/cue/remove 3", "/cue/set 1 at bar", "/cue/add lift lift"}));
   EXPECT_EQ(panel.read("/cue/current"), 0) << "nothing was started";
 }
 

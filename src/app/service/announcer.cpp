@@ -30,7 +30,8 @@ bool has_ended(const system::ChildProcess& process) {
 }  // namespace
 
 void Announcer::update(const std::vector<AnnouncedPort>& ports) {
-  std::erase_if(services_, [&](const Service& service) { return std::ranges::find(ports, service.port) == ports.end(); });
+  std::erase_if(services_,
+                [&](const Service& service) { return std::ranges::find(ports, service.port) == ports.end(); });
   for (const AnnouncedPort& port : ports) {
     if (std::ranges::find(services_, port, &Service::port) == services_.end()) services_.push_back({port, nullptr});
   }

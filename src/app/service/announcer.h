@@ -1,5 +1,5 @@
-// Announcer: announces the ports of a show by zeroconf (DNS-SD), with Avahi's program avahi-publish, so that tablets and
-// other programs find it by name. [main]
+// Announcer: announces the ports of a show by zeroconf (DNS-SD), with Avahi's program avahi-publish, so that tablets
+// and other programs find it by name. [main]
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Edits the JSON of a cue file, so that the fields of other cues and their order stay; the cue parser checks the result.
+// Edits the JSON of a cue file, so that the fields of other cues and their order stay; the cue parser checks the
+// result.
 #include "engine/cues/cue_edit.h"
 
 #include <algorithm>
@@ -43,7 +44,8 @@ std::string text_of_cues(const EditedJson& json) {
 EditedJson json_of(const Arg& arg) {
   switch (arg.kind) {
     case Arg::Kind::number:
-      if (arg.number == std::floor(arg.number) && std::abs(arg.number) < 1e15) return static_cast<std::int64_t>(arg.number);
+      if (arg.number == std::floor(arg.number) && std::abs(arg.number) < 1e15)
+        return static_cast<std::int64_t>(arg.number);
       return arg.number;
     case Arg::Kind::boolean:
       return arg.number != 0;
@@ -59,7 +61,8 @@ class CueEditor {
   CueEditor(EditedJson& cues, const std::vector<Arg>& args) : cues_(cues), args_(args) {}
 
   Result<void> add(std::size_t current) {
-    if (args_.empty() || args_.size() > 2 || !all_texts()) return Error{"takes a name, and the name of a preset if it has one"};
+    if (args_.empty() || args_.size() > 2 || !all_texts())
+      return Error{"takes a name, and the name of a preset if it has one"};
     EditedJson cue = {{"name", args_[0].text}};
     if (args_.size() == 2) cue["preset"] = args_[1].text;
     cues_.insert(cues_.begin() + static_cast<std::ptrdiff_t>(std::min(current, cues_.size())), std::move(cue));
@@ -100,19 +103,23 @@ class CueEditor {
   }
 
  private:
-  bool all_texts() const { return std::ranges::all_of(args_, [](const Arg& arg) { return arg.is_text(); }); }
+  bool all_texts() const {
+    return std::ranges::all_of(args_, [](const Arg& arg) { return arg.is_text(); });
+  }
   // Returns the index of a cue, given by its name or number.
   Result<std::size_t> find(const Arg& cue) const {
     std::vector<std::string> names;
     for (const EditedJson& known : cues_) names.push_back(known["name"].get<std::string>());
     if (cue.is_numeric()) {
-      const bool known = cue.number >= 1 && cue.number <= static_cast<double>(names.size()) && cue.number == std::floor(cue.number);
+      const bool known =
+          cue.number >= 1 && cue.number <= static_cast<double>(names.size()) && cue.number == std::floor(cue.number);
       if (known) return static_cast<std::size_t>(cue.number) - 1;
       return Error{fmt::format("the number of a cue must be 1 to {}, got {}", names.size(), number_text(cue.number))};
     }
     const auto found = std::ranges::find(names, cue.text);
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-    return Error{fmt::format("there is no cue '{}'{}", printable(shortened(cue.text, 100)), name_hint(cue.text, names))};
+    return Error{
+        fmt::format("there is no cue '{}'{}", printable(shortened(cue.text, 100)), name_hint(cue.text, names))};
   }
 
   EditedJson& cues_;

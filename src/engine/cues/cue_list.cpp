@@ -109,8 +109,7 @@ class CueParser {
     if (value == nullptr) return {};
     const double seconds = value->is_number() ? value->get<double>() : -1;
     if (!(seconds >= 0 && seconds <= Cue::kMaxFollowSeconds))
-      return Error{
-          fmt::format("{}: must be a number of seconds from 0 to {}, or null", field, Cue::kMaxFollowSeconds)};
+      return Error{fmt::format("{}: must be a number of seconds from 0 to {}, or null", field, Cue::kMaxFollowSeconds)};
     to = seconds;
     return {};
   }

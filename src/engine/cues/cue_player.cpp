@@ -20,7 +20,8 @@ constexpr double kMaxCueTicks = 2e9;
 
 // Without tabs and line ends, which separate the fields.
 std::string field_text(std::string text) {
-  std::ranges::replace_if(text, [](char c) { return c == '\t' || c == '\n'; }, ' ');
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\t' || c == '\n'; }, ' ');
   return text;
 }
 

@@ -1,8 +1,8 @@
 // Decodes packets with a visitor of PacketParser that builds messages and rejects unsupported ones.
 #include "net/osc/packets/decode.h"
 
-#include <bit>
 #include <array>
+#include <bit>
 #include <cstring>
 #include <string_view>
 #include <utility>
@@ -71,8 +71,7 @@ class DecodingVisitor {
     time_tags_[level] = depth == 1 ? tag : std::max(tag, time_tags_[level - 1]);
     depth_ = level;
   }
-  void end_bundle(int depth) { depth_ = static_cast<std::size_t>(depth - 1);
-  }
+  void end_bundle(int depth) { depth_ = static_cast<std::size_t>(depth - 1); }
   void message(const char* address, const char* tags) {
     message_.address = address;
     message_.args.clear();

@@ -53,7 +53,8 @@ class CuesPanel : public Panel {
     draw_buttons(context, cues.empty());
     draw_clock(context);
     if (!ImGui::BeginChild("##cues", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
-    if (cues.empty()) ImGui::TextDisabled("No cues: add one, or write them to a file beside the scene, SCENE.cues.json");
+    if (cues.empty())
+      ImGui::TextDisabled("No cues: add one, or write them to a file beside the scene, SCENE.cues.json");
     const auto current = static_cast<int>(context.number("/cue/current"));
     int number = 0;
     count_ = cues.empty() ? 0 : static_cast<int>(1 + std::ranges::count(cues, '\n'));

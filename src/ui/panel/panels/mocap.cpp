@@ -64,10 +64,14 @@ class MocapPanel : public Panel {
     const double age = context.number(path + "/age");
     if (ImGui::IsItemHovered())
       ImGui::SetTooltip("%s: %s. Click to see and adjust its place, scale and limits", name.c_str(),
-                        tracked ? "frames arrive" : age < 0 ? "no frame has arrived yet" : "lost; it stays where it is");
+                        tracked   ? "frames arrive"
+                        : age < 0 ? "no frame has arrived yet"
+                                  : "lost; it stays where it is");
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddCircleFilled({at.x + size / 2, at.y + size / 2}, size / 4,
-                         packed_color(tracked ? ThemeColor::green : age < 0 ? ThemeColor::secondary : ThemeColor::red));
+                         packed_color(tracked   ? ThemeColor::green
+                                      : age < 0 ? ThemeColor::secondary
+                                                : ThemeColor::red));
     const auto missing = static_cast<std::uint64_t>(std::max(0.0, context.number(path + "/missing")));
     std::string state = fmt::format("{:.0f} frames", context.number(path + "/frames"));
     if (age >= 0) state += fmt::format("  {:.2f} s ago", age);
