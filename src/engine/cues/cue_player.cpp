@@ -18,6 +18,12 @@ constexpr double kCueEvent = 3;  // after the kinds of TakeEvent, which have ano
 constexpr std::size_t kCueEventArgs = 6;
 constexpr double kMaxCueTicks = 2e9;
 
+// Four numbers, the name, and since the second version a number.
+bool has_state_types(const std::vector<Arg>& args) {
+  const bool named = args[4].is_text() && args[4].text.size() <= Cue::kMaxText;
+  return named && std::ranges::all_of(args, [&](const Arg& arg) { return &arg == &args[4] || arg.is_numeric(); });
+}
+
 // Without tabs and line ends, which separate the fields.
 std::string field_text(std::string text) {
   std::ranges::replace_if(
@@ -102,14 +108,12 @@ std::optional<CueState> cue_state_of(const Message& message) {
   const bool has_waiting = args.size() == kCueEventArgs;
   if (!message.address.empty() || (!has_waiting && args.size() != kCueEventArgs - 1) || args[0].number != kCueEvent)
     return std::nullopt;
-  if (!std::ranges::all_of(args.begin(), args.begin() + 4, &Arg::is_numeric) || !args[4].is_text()) return std::nullopt;
+  if (!has_state_types(args)) return std::nullopt;
   const double waiting = has_waiting ? args[5].number : 0;
   if (!(waiting >= 0 && waiting <= kMaxCues)) return std::nullopt;
   const double number = args[1].number;
   const double ticks = args[2].number;
-  if (!(number >= 0 && number <= kMaxCues) || !(ticks >= -1 && ticks <= kMaxCueTicks) ||
-      args[4].text.size() > Cue::kMaxText)
-    return std::nullopt;
+  if (!(number >= 0 && number <= kMaxCues) || !(ticks >= -1 && ticks <= kMaxCueTicks)) return std::nullopt;
   CueState state{
       static_cast<std::uint32_t>(number), args[4].text, {}, args[3].number != 0, static_cast<std::uint32_t>(waiting)};
   if (ticks >= 0) state.ticks = static_cast<std::uint32_t>(ticks);

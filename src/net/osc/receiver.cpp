@@ -196,6 +196,7 @@ bool is_for_network(const Message& message) {
 
 // Moves the messages of nested bundles that are due later out of a packet: a command for each entry of `later`.
 std::vector<engine::Command> take_later(Decoded& packet) {
+  if (packet.later.empty()) return {};
   std::vector<engine::Command> commands(packet.later.size());
   std::vector<Message> now;
   std::size_t part = 0;
@@ -219,7 +220,7 @@ Receiver::ScanResult Receiver::scan(const char* data, std::size_t size, const Co
   Result<Decoded> decoded = decode_packet(data, size);
   if (!decoded || scheduled_.is_future(decoded->time_tag)) return scanned;
   scanned.urgent = true;
-  if (!decoded->later.empty()) (void)take_later(*decoded);
+  (void)take_later(*decoded);
   for (Message& message : decoded->messages) {
     if (const std::optional<engine::UrgentKind> kind = engine::urgent_kind(message))
       link_.command_queue.push_urgent({*kind, std::move(message), origin, scanned.arrival});
@@ -261,8 +262,7 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
   if (link_.message_log.enabled()) log_messages(origin, *decoded);
   for (const RejectedMessage& r : decoded->rejected) reject(origin, r.address, r.reason);
 
-  std::vector<engine::Command> later;
-  if (!decoded->later.empty()) later = take_later(*decoded);
+  std::vector<engine::Command> later = take_later(*decoded);
   // a ping is answered by this thread, not by the simulation
   const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
   for (std::size_t i = 0; i < pings; i++) callbacks_.pong(origin);
@@ -279,9 +279,14 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
   origin.is_subscriber = origin.is_subscriber || callbacks_.is_subscriber(origin);
   if (!decoded->messages.empty())
     deliver(decoded->time_tag, {std::move(decoded->messages), origin, nullptr, scanned.arrival}, scanned.urgent);
-  for (std::size_t i = 0; i < later.size(); i++) {
-    later[i].origin = origin;
-    if (!later[i].messages.empty()) deliver(decoded->later[i].time_tag, std::move(later[i]), false);
+  deliver_later(*decoded, std::move(later), origin);
+}
+
+void Receiver::deliver_later(const Decoded& packet, std::vector<engine::Command> commands,
+                             const CommandOrigin& origin) {
+  for (std::size_t i = 0; i < commands.size(); i++) {
+    commands[i].origin = origin;
+    if (!commands[i].messages.empty()) deliver(packet.later[i].time_tag, std::move(commands[i]), false);
   }
 }
 

@@ -110,6 +110,7 @@ class Receiver {
   void decode_slice();
   void process_psn(std::string_view bytes, const CommandOrigin& origin, ScanResult scanned);
   void log_messages(const CommandOrigin& origin, const Decoded& packet);
+  void deliver_later(const Decoded& packet, std::vector<engine::Command> commands, const CommandOrigin& origin);
   void deliver(std::uint64_t time_tag, engine::Command command, bool urgent_pushed);
   void push(engine::Command command, bool urgent_pushed = false);
   void reject(const CommandOrigin& origin, const std::string& address, const std::string& text);

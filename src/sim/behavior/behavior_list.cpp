@@ -32,15 +32,15 @@ void warn_unused_targets(const BehaviorType& type, const Body& body, std::string
 BehaviorList::BehaviorList(World& world, NodeId physics)
     : world_(world),
       group_node_(world.store().add_group(physics, "group")),
-      routes_(world.store(), physics),
-      clock_(world) {
-  routes_.set_transaction(world.transaction());
+      routes_(std::make_unique<RouteList>(world.store(), physics)),
+      clock_(std::make_unique<BeatClock>(world)) {
+  routes_->set_transaction(world.transaction());
 }
 
 BehaviorList::~BehaviorList() { clear(); }
 
 void BehaviorList::clear() {
-  routes_.clear();
+  routes_->clear();
   while (!entries_.empty()) destroy_last();
 }
 
@@ -269,7 +269,7 @@ Result<void> BehaviorList::check_can_move() const {
 }
 
 void BehaviorList::step(double dt) {
-  routes_.apply(dt);
+  routes_->apply(dt);
   update_members();
   step_count_++;
   stepping_ = true;
@@ -311,8 +311,8 @@ void BehaviorList::replace_instances(std::string_view type_name) {
 }
 
 void BehaviorList::serialize(Archive& archive) {
-  routes_.serialize(archive);
-  clock_.serialize(archive);
+  routes_->serialize(archive);
+  clock_->serialize(archive);
   for (const StepEntry& entry : entries_) {
     if (entry.single != nullptr) entry.single->serialize_all(archive);
     if (entry.group != nullptr) entry.group->serialize(archive);
@@ -320,7 +320,7 @@ void BehaviorList::serialize(Archive& archive) {
 }
 
 std::uint64_t BehaviorList::state_hash(std::uint64_t hash) const {
-  hash = clock_.state_hash(routes_.state_hash(hash));
+  hash = clock_->state_hash(routes_->state_hash(hash));
   for (const StepEntry& entry : entries_) {
     if (entry.group != nullptr) hash = entry.group->state_hash(hash);
   }

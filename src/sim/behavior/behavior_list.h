@@ -28,10 +28,9 @@ class BehaviorList {
   BehaviorList& operator=(const BehaviorList&) = delete;
 
   /// The routes of the world.
-  RouteList& routes() { return routes_; }
-  const RouteList& routes() const { return routes_; }
-  BeatClock& clock() { return clock_; }
-  const BeatClock& clock() const { return clock_; }
+  RouteList& routes() const { return *routes_; }
+  /// Musical time.
+  BeatClock& clock() const { return *clock_; }
   BehaviorTypes& types() { return types_; }
   const BehaviorTypes& types() const { return types_; }
 
@@ -114,8 +113,8 @@ class BehaviorList {
   World& world_;
   NodeId group_node_;
   BehaviorTypes types_;
-  RouteList routes_;
-  BeatClock clock_;
+  std::unique_ptr<RouteList> routes_;
+  std::unique_ptr<BeatClock> clock_;
   std::vector<StepEntry> entries_;
   BehaviorOrder order_{world_, entries_};
   std::vector<RemovedBehavior> retired_;  // removed while behaviors were stepped
