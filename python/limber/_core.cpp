@@ -322,8 +322,9 @@ PYBIND11_MODULE(_core, module) {
   reject_subinterpreter();
   module.doc() = "The classes of the package limber that are written in C++.";
   module.attr("version") = limber_version(nullptr, nullptr);
-  module.def("data_folder", &limber_data_folder,
-             "The folder with Limber's scripts/ and urdf/, such as data_folder() + '/scripts/arms.lua'; '' if there is none.");
+  module.def(
+      "data_folder", &limber_data_folder,
+      "The folder with Limber's scripts/ and urdf/, such as data_folder() + '/scripts/arms.lua'; '' if there is none.");
   py::register_exception<SimError>(module, "SimError", PyExc_RuntimeError).doc() =
       "The scene has an error, or an object doesn't belong to this simulation, process or run of the scene.";
   py::class_<State>(module, "State", "A state that Sim.state() has saved; Sim.restore() returns to it.");
