@@ -105,7 +105,7 @@ TEST(SerialSender, KeepsTheNewestPacketWhileThePortIsBusy) {
   ASSERT_TRUE(sender.open(device.path()).ok());
   int sent = 0;
   while (!sender.has_unsent() && sent < 10000) ASSERT_EQ(sender.send(packet_of(static_cast<std::uint8_t>(sent++))), 0);
-  ASSERT_TRUE(sender.has_unsent()) << "no program reads, so the port becomes full";
+  ASSERT_TRUE(sender.has_unsent()) << "no reader, so the port becomes full";
   for (int i = 0; i < 100; i++) ASSERT_EQ(sender.send(packet_of(200)), 0);
   ASSERT_EQ(sender.send(packet_of(201)), 0);
   int received = 0;
