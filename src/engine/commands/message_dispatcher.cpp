@@ -425,8 +425,7 @@ Outcome MessageDispatcher::request_scene(const Message& message) {
 }
 
 Outcome MessageDispatcher::request_cue_edit(const Message&) {
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::scene_request;
+  Outcome outcome{.kind = Outcome::Kind::scene_request};
   outcome.error = "cues can be edited in a live show only (limber play, without --fast)";
   return outcome;
 }
