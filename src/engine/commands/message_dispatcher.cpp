@@ -37,6 +37,14 @@ constexpr std::string_view kObjectPaths[] = {"/physics/body/", "/physics/group/"
 // legacy addresses that changed the frames of a joint; no longer supported
 constexpr const char* kUnsupported[] = {"/physics/joint/basis", "/physics/joint/prevpos", "/physics/joint/nextpos"};
 
+// A request for EngineLink::on_scene_request; without it, it is rejected with this error.
+Outcome scene_request(const char* error) {
+  Outcome outcome;
+  outcome.kind = Outcome::Kind::scene_request;
+  outcome.error = error;
+  return outcome;
+}
+
 // Returns the address in lower case, without underscores and a trailing slash, in `buffer`; empty if it does not fit,
 // because it is longer than any known address.
 std::string_view normalized_address(std::string_view address, std::array<char, 96>& buffer) {
@@ -417,17 +425,11 @@ Outcome MessageDispatcher::request_scene(const Message& message) {
   } else if (message.args.size() != 1 || message.args[0].kind == Arg::Kind::nil || message.args[0].is_numeric()) {
     return Outcome::rejected("takes the name of a scene; /list/scenes lists them");
   }
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::scene_request;
-  outcome.error =
-      "scenes can be changed in a live show only (limber play, without --fast)";  // used without on_scene_request
-  return outcome;
+  return scene_request("scenes can be changed in a live show only (limber play, without --fast)");
 }
 
 Outcome MessageDispatcher::request_cue_edit(const Message&) {
-  Outcome outcome{.kind = Outcome::Kind::scene_request};
-  outcome.error = "cues can be edited in a live show only (limber play, without --fast)";
-  return outcome;
+  return scene_request("cues can be edited in a live show only (limber play, without --fast)");
 }
 
 Outcome MessageDispatcher::answer_health(const Message& message) {
