@@ -18,11 +18,13 @@ using namespace test;
 struct ClockFixture : WorldFixture {
   BeatClock& clock() { return world.behaviors().clock(); }
   double value(const char* name) { return number(clock().id(), name); }
-  void call(const char* action, const std::vector<double>& values = {}) { set(clock().id(), action, values); }
+  void call(const char* action, const std::vector<double>& values = {}) {
+    const Result<void> done = BeatClock::table().at(action).invoke(&clock(), values);
+    EXPECT_TRUE(done.ok()) << (done.ok() ? "" : done.error());
+  }
   std::string rejection(double beat, double tempo) {
-    const Result<SetOutcome> outcome =
-        store.set(clock().id(), BeatClock::table().at("sync"), std::vector<double>{beat, tempo});
-    return outcome ? "" : outcome.error();
+    const Result<void> done = BeatClock::table().at("sync").invoke(&clock(), std::vector<double>{beat, tempo});
+    return done ? "" : done.error();
   }
   /// Ticks until a multiple of `every` is reached, at most 1000.
   int ticks_until(double every) {

@@ -37,11 +37,10 @@ constexpr std::string_view kObjectPaths[] = {"/physics/body/", "/physics/group/"
 // legacy addresses that changed the frames of a joint; no longer supported
 constexpr const char* kUnsupported[] = {"/physics/joint/basis", "/physics/joint/prevpos", "/physics/joint/nextpos"};
 
-// A request for EngineLink::on_scene_request; without it, it is rejected with this error.
-Outcome scene_request(const char* error) {
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::scene_request;
-  outcome.error = error;
+// A request that another part executes; where there is none, it is rejected with this error.
+Outcome request_of(Outcome::Kind kind, const char* error) {
+  Outcome outcome = Outcome::rejected(error);
+  outcome.kind = kind;
   return outcome;
 }
 
@@ -425,11 +424,13 @@ Outcome MessageDispatcher::request_scene(const Message& message) {
   } else if (message.args.size() != 1 || message.args[0].kind == Arg::Kind::nil || message.args[0].is_numeric()) {
     return Outcome::rejected("takes the name of a scene; /list/scenes lists them");
   }
-  return scene_request("scenes can be changed in a live show only (limber play, without --fast)");
+  return request_of(Outcome::Kind::scene_request,
+                    "scenes can be changed in a live show only (limber play, without --fast)");
 }
 
 Outcome MessageDispatcher::request_cue_edit(const Message&) {
-  return scene_request("cues can be edited in a live show only (limber play, without --fast)");
+  return request_of(Outcome::Kind::scene_request,
+                    "cues can be edited in a live show only (limber play, without --fast)");
 }
 
 Outcome MessageDispatcher::answer_health(const Message& message) {
@@ -456,10 +457,7 @@ Outcome MessageDispatcher::request_cue(const Message& message) {
   if (message.args.size() != 1 || message.args[0].kind == Arg::Kind::nil)
     return Outcome::rejected("takes the name or the number of a cue; /list/cues lists them");
   if (is_button_release(message.args)) return {};
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::cue_request;
-  outcome.error = "cues can be started in a running show only";  // used where there is no InputSource
-  return outcome;
+  return request_of(Outcome::Kind::cue_request, "cues can be started in a running show only");
 }
 
 Outcome MessageDispatcher::answer_get(const Message& message) { return query_handler_.get(message.args); }
