@@ -61,7 +61,7 @@ TEST(Gui, HelpFitsSmallWindow) {
     const PanelRect last = fixture.rect_of("help:Tab, arrows, Enter");
     EXPECT_GT(last.y, first.y);
     EXPECT_LT(last.y + last.height, height - 8) << width;
-    EXPECT_GE(last.height, 11) << "and can be read";
+    EXPECT_GE(last.height, 10.5) << "and can be read";
   }
 }
 

@@ -76,6 +76,9 @@ TEST(PanelCues, CuesAreEditedInTheirMenu) {
     for (const Arg& arg : message.args) text += " " + (arg.is_text() ? arg.text : number_text(arg.number));
     requests.push_back(text);
   };
+  panel.click("cues.add");
+  panel.type("lift");
+  panel.click("cues.add_now");
   panel.click("cues.cue:end", 1);
   panel.click("menu:cue_up");
   panel.click("cues.cue:end", 1);
@@ -83,11 +86,8 @@ TEST(PanelCues, CuesAreEditedInTheirMenu) {
   panel.click("cues.cue:calm", 1);
   panel.click("cues.field:at");
   panel.click("cues.at:bar");
-  panel.click("cues.add");
-  panel.type("lift");
-  panel.click("cues.add_now");
   EXPECT_EQ(requests,
-            (std::vector<std::string>{"/cue/move 3 2", "/cue/remove 3", "/cue/set 1 at bar", "/cue/add lift lift"}));
+            (std::vector<std::string>{"/cue/add lift lift", "/cue/move 3 2", "/cue/remove 3", "/cue/set 1 at bar"}));
   EXPECT_EQ(panel.read("/cue/current"), 0) << "nothing was started";
 }
 

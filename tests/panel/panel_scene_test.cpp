@@ -15,7 +15,7 @@ TEST(PanelScene, ExpandsAndSelects) {
   EXPECT_EQ(fixture.gui->context().selected, "/physics/body/arm");
   EXPECT_TRUE(fixture.is_visible("section:/physics/body/arm")) << "its properties are shown";
   fixture.click("tree:/physics/body/arm");
-  fixture.scroll("tree:/physics/body/arm", -3);
+  fixture.scroll("tree:/physics/body/arm", -5);
   fixture.click("tree:/physics/body/arm/part");
   fixture.scroll("tree:/physics/body/arm/part", -3);
   fixture.click("tree:/physics/body/arm/part/tip");

@@ -6,7 +6,7 @@
 ---@class clock
 ---@field alive boolean # read-only. Always true.
 ---@properties clock
----@error sim.clock.tempo = "fast" --> sim.clock: 'tempo' takes a number, not "fast"
+---@error sim.clock.tempo = "fast" --> sim.clock: 'tempo' takes a number, not 'fast'
 ---@see sim.clock, sim:on_beat
 ---@example clock
 local clock_ = {}
@@ -16,7 +16,8 @@ local clock_ = {}
 function clock_:start() end
 
 ---@action clock sync
----@see sim.clock
+---@param beat number # The beat now.
+---@param tempo number # Beats per minute.
 ---@example clock
 function clock_:sync(beat, tempo) end
 

@@ -108,7 +108,7 @@ class MocapPanel : public Panel {
 };
 
 [[maybe_unused]] const bool kMocapPanel = register_panel_type<MocapPanel>({.name = "mocap",
-                                                                           .title = "Motion capture",
+                                                                           .title = "Mocap",
                                                                            .wide_slot = PanelSlot::bottom_middle,
                                                                            .compact_slot = PanelSlot::bottom,
                                                                            .order = 11});
