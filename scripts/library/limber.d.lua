@@ -772,6 +772,8 @@ local clock_ = {}
 function clock_:start() end
 
 ---Follows another clock: its beat now, and its tempo. A difference of up to half a beat is corrected within a second, a larger one at once.
+---@param beat number # The beat now.
+---@param tempo number # Beats per minute.
 function clock_:sync(beat, tempo) end
 
 ---Taps a beat: two or more, at most 3 s apart, set the tempo, and each is the nearest full beat.

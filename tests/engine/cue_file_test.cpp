@@ -127,7 +127,8 @@ TEST(CueEdit, AddsMovesAndRemoves) {
   text = edited(text, "/cue/add", {Arg::of("two")}, 1);
   const auto names = [](const std::string& file) {
     std::string list;
-    for (const Cue& cue : parse_cues(file).value()) list += cue.name + " ";
+    const CueList cues = parse_cues(file).value();
+    for (const Cue& cue : cues) list += cue.name + " ";
     return list;
   };
   EXPECT_EQ(names(text), "one two three ");
@@ -164,7 +165,7 @@ TEST(CueEdit, RejectsWrongRequestsAndFiles) {
   EXPECT_EQ(edited(file, "/cue/remove", {Arg::of(2.0)}), "error: the number of a cue must be 1 to 1, got 2");
   EXPECT_EQ(edited(file, "/cue/remove", {}), "error: takes the name or the number of a cue");
   EXPECT_EQ(edited(file, "/cue/add", {Arg::of(3.0)}), "error: takes a name, and the name of a preset if it has one");
-  EXPECT_EQ(edited(file, "/cue/add", {Arg::of("one")}), "error: cue 1 'one': name: another cue has the same name");
+  EXPECT_EQ(edited(file, "/cue/add", {Arg::of("one")}), "error: cue 2 'one': name: another cue has the same name");
   EXPECT_EQ(edited(file, "/cue/move", {Arg::of("one")}), "error: takes a cue, and the number that it will have");
   EXPECT_EQ(edited("{", "/cue/add", {Arg::of("two")}).substr(0, 22), "error: line 1: not val");
 }

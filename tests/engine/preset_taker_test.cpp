@@ -204,7 +204,7 @@ TEST_F(PresetCapturerTest, ASelectionHasTheMatchesOfItsPatterns) {
   }
   // an empty selection includes all properties, here with the state of parts
   const auto all = *PresetCapturer().capture(rig.store, "all", {{}, {}, true, true});
-  EXPECT_EQ(properties_of(*all), properties_of(rig.store, {{"/physics", "/visuals"}, {}, true, true}));
+  EXPECT_EQ(properties_of(*all), properties_of(rig.store, {{"/clock", "/physics", "/visuals"}, {}, true, true}));
 }
 
 TEST_F(PresetCapturerTest, ReportsASelectionWithoutMatch) {

@@ -120,10 +120,11 @@ void BeatClock::publish() {
 }
 
 std::uint64_t BeatClock::state_hash(std::uint64_t start) const {
-  if (state_.changed == 0) return start;
+  const double playing = setting(clock_properties().playing);
+  if (state_.changed == 0 && playing != 0) return start;
   NumberHash numbers(start);
   numbers.add(state_.beat, state_.tempo, state_.correction);
-  numbers.add(state_.synced_at, state_.tapped_at, state_.playing);
+  numbers.add(state_.synced_at, state_.tapped_at, playing);
   return numbers.value();
 }
 

@@ -110,7 +110,7 @@ class MocapPanel : public Panel {
 [[maybe_unused]] const bool kMocapPanel = register_panel_type<MocapPanel>({.name = "mocap",
                                                                            .title = "Mocap",
                                                                            .wide_slot = PanelSlot::bottom_middle,
-                                                                           .compact_slot = PanelSlot::bottom,
+                                                                           .compact_slot = PanelSlot::right,
                                                                            .order = 11});
 
 }  // namespace
