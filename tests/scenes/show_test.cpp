@@ -51,7 +51,7 @@ TEST(ShowScene, TheArmsStrikeWithTheBeat) {
   for (const auto& [address, value] : {std::pair{"/scene/sway", 0.0}, {"/scene/energy", 0.0}, {"/scene/strike", 1.0}})
     player.send(address, {Arg::of(value)});
   player.play(2);
-  double last = 0;
+  double last = player.value("/physics/body/arm1/motor/joint_4/target");
   std::vector<double> beats;
   for (int tick = 0; tick < 480; tick++) {
     player.play(1.0 / 60);
