@@ -17,7 +17,7 @@ TEST(PanelScene, ExpandsAndSelects) {
   fixture.click("tree:/physics/body/arm");
   fixture.scroll("tree:/physics/body/arm", -1);
   fixture.click("tree:/physics/body/arm/part");
-  fixture.scroll("tree:/physics/body/arm/part", -1);
+  fixture.scroll("tree:/physics/body/arm/part", -2);
   fixture.click("tree:/physics/body/arm/part/tip");
   fixture.drag("/physics/body/arm/part/tip/friction", 0.8);
   EXPECT_GT(fixture.read("/physics/body/arm/part/tip/friction"), 0.5);

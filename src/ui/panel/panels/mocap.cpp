@@ -109,7 +109,7 @@ class MocapPanel : public Panel {
 
 [[maybe_unused]] const bool kMocapPanel = register_panel_type<MocapPanel>({.name = "mocap",
                                                                            .title = "Mocap",
-                                                                           .wide_slot = PanelSlot::bottom_middle,
+                                                                           .wide_slot = PanelSlot::bottom_right,
                                                                            .compact_slot = PanelSlot::right,
                                                                            .order = 11});
 
