@@ -67,7 +67,7 @@ def measure(limber, seconds):
     scene.write_text(SCENE)
     show = subprocess.Popen(
         [limber, "play", str(scene), "--headless", "--quiet", "--osc-in", f"127.0.0.1:{port}", "--osc-out", "off",
-         "--query", "off", "--lights", "--lights-out", f"artnet:127.0.0.1:{light.getsockname()[1]}", "rate=60"])
+         "--query", "off", "--lights", "--lights-out", f"artnet:127.0.0.1:{light.getsockname()[1]},rate=60"])
     out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     to = ("127.0.0.1", port)
     samples, value, changed_at, frame = [], 0, None, 0
