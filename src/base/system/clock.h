@@ -12,6 +12,12 @@ inline double clock_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// The time by the steady clock, in ns.
+inline std::int64_t clock_nanoseconds() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
 /// Measures intervals: lap() returns the seconds since the previous lap() or the construction.
 class Stopwatch {
  public:

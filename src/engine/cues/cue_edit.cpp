@@ -88,7 +88,7 @@ class CueEditor {
   }
   Result<void> set() {
     if (args_.size() != 3 || !args_[1].is_text())
-      return Error{"takes a cue, a field (name, preset, time, easing, at, when, follow, note) and its value"};
+      return Error{"takes a cue, a field (name, preset, time, easing, at, when, begin, follow, note) and its value"};
     const Result<std::size_t> index = find(args_[0]);
     if (!index) return Error{index.error()};
     const std::string& field = args_[1].text;

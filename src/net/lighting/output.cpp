@@ -22,11 +22,6 @@ constexpr std::int64_t kSecond = 1'000'000'000;
 constexpr int kNotOpened = -1;                        // Output::reported_error
 constexpr std::int64_t kIdleInterval = kSecond / 20;  // between two looks at `armed`
 
-std::int64_t now_nanoseconds() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 Cid random_cid() {
   std::random_device device;
   Cid cid;
@@ -62,7 +57,7 @@ void LightingOutput::start() {
   std::string text;
   for (const std::string& line : status_lines()) text += fmt::format("{}{}", text.empty() ? "" : "\n", line);
   link_.lighting.set_text(text);
-  for (const std::unique_ptr<Output>& output : outputs_) open(*output, now_nanoseconds());
+  for (const std::unique_ptr<Output>& output : outputs_) open(*output, system::clock_nanoseconds());
   stop_ = false;
   thread_ = std::thread([this] { run(); });
 }
@@ -155,7 +150,8 @@ void LightingOutput::wait_until(std::int64_t next) {
   for (const std::unique_ptr<Output>& output : outputs_) {
     if (output->serial.has_unsent()) entries.push_back({.fd = output->serial.fd(), .read = false, .write = true});
   }
-  (void)system::wait_ready(entries, std::chrono::nanoseconds(std::max<std::int64_t>(0, next - now_nanoseconds())));
+  (void)system::wait_ready(entries,
+                           std::chrono::nanoseconds(std::max<std::int64_t>(0, next - system::clock_nanoseconds())));
   for (const std::unique_ptr<Output>& output : outputs_) {
     if (!output->serial.has_unsent()) continue;
     if (const int error = output->serial.flush(); error != 0) report(*output, error);
@@ -165,7 +161,7 @@ void LightingOutput::wait_until(std::int64_t next) {
 void LightingOutput::run() {
   system::name_this_thread("limber-lights");
   while (!stop_.load()) {
-    wait_until(send_due(now_nanoseconds()));
+    wait_until(send_due(system::clock_nanoseconds()));
     wake_.clear();
   }
   if (std::exchange(sends_, false)) {

@@ -25,7 +25,7 @@ class SerialSender {
   /// Sends a packet, now or with flush(). Returns 0, or an errno after which the port is closed: the device is gone.
   int send(const std::string& packet);
   int flush();
-  /// Gives the device a moment to receive what was sent.
+  /// Closes the port, after waiting at most 0.1 s each for the last packet to be written and to be received.
   void close();
 
  private:

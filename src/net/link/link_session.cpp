@@ -12,6 +12,7 @@
 
 #include "base/log/log.h"
 #include "base/plural.h"
+#include "base/system/clock.h"
 #include "base/system/file.h"
 #include "base/system/thread.h"
 #include "base/system/wait.h"
@@ -26,11 +27,6 @@ constexpr std::int64_t kRetryProgram = 5 * kSecond;         // ns
 constexpr std::int64_t kSilence = 5 * kSecond;              // ns without a line after which the program counts as hung
 constexpr std::size_t kMaxReceived = std::size_t{1} << 16;  // bytes
 constexpr double kTempoTolerance = 1e-3;                    // beats per minute
-
-std::int64_t link_now() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
 
 }  // namespace
 
@@ -133,13 +129,13 @@ void LinkSession::handle(std::string_view text) {
 void LinkSession::run() {
   system::name_this_thread("limber-link");
   while (!stop_.load()) {
-    const std::int64_t wait = update_program(link_now());
+    const std::int64_t wait = update_program(system::clock_nanoseconds());
     std::array<system::PollEntry, 2> entries{};
     entries[0] = {.fd = wake_.fd()};
     entries[1] = {.fd = process_.started() ? process_.output() : -1};
     (void)system::wait_ready(entries, std::chrono::nanoseconds(wait));
     wake_.clear();
-    if (process_.started() && entries[1].ready) read_lines(link_now());
+    if (process_.started() && entries[1].ready) read_lines(system::clock_nanoseconds());
   }
 }
 

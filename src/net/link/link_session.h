@@ -17,12 +17,13 @@
 
 namespace limber::link {
 
-/// Decides what is sent to the show and to the session. [link]
+/// Translates between the lines of limber-link and the messages of the show. [the session's thread]
 class LinkTranslator {
  public:
   /// Returns the messages to the show for a line of limber-link. `clock`: the show's.
   std::vector<Message> messages(const LinkLine& line, const sim::ClockReading& clock);
-  /// Returns the lines to limber-link for what the performer has changed since the last call. `tick`: of the clock.
+  /// Returns the lines that tell limber-link which tempo, bar or start and stop the performer has set since the last
+  /// call. `clock`: the show's, at this tick.
   std::string lines(const sim::ClockReading& clock, std::uint64_t tick);
 
  private:

@@ -28,11 +28,6 @@ std::string event_text(const ControlEvent& event, const std::string& device) {
 
 }  // namespace
 
-std::int64_t MidiService::steady_time() {
-  return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::steady_clock::now().time_since_epoch())
-      .count();
-}
-
 MidiService::MidiService(engine::EngineLink& link, MidiOptions options, std::unique_ptr<PortSystem> ports,
                          std::function<std::int64_t()> now)
     : link_(link),
@@ -93,7 +88,7 @@ void MidiService::run() {
 
 std::int64_t MidiService::update() {
   const std::int64_t now = now_();
-  handle_requests(now);
+  handle_requests();
   mapping_.poll_file(now);
   if (is_on()) {
     scan_devices(now);
@@ -110,7 +105,7 @@ std::int64_t MidiService::update() {
   return next_time(now);
 }
 
-void MidiService::handle_requests(std::int64_t) {
+void MidiService::handle_requests() {
   std::optional<std::string> scene;
   {
     const std::scoped_lock lock(scene_mutex_);

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/system/clock.h"
 #include "base/system/wake.h"
 #include "engine/output/engine_link.h"
 #include "net/midi/clock/clocks.h"
@@ -33,7 +34,7 @@ class MidiService {
 
   /// `now` returns the time in ns; tests replace it.
   MidiService(engine::EngineLink& link, MidiOptions options, std::unique_ptr<PortSystem> ports = system_ports(),
-              std::function<std::int64_t()> now = &MidiService::steady_time);
+              std::function<std::int64_t()> now = system::clock_nanoseconds);
   ~MidiService();
   MidiService(const MidiService&) = delete;
   MidiService& operator=(const MidiService&) = delete;
@@ -44,11 +45,10 @@ class MidiService {
   void stop();
   /// Uses the map of another scene. [any]
   void set_scene(const std::string& scene);
-  /// Does what is due: the thread's work. Returns the time of the next call, ns; earlier if bytes arrive.
+  /// Handles requests, received bytes, feedback and the clock: one round of the thread's loop. Returns the time of the
+  /// next call, ns; bytes that arrive make it earlier.
   /// [the thread; tests without one]
   std::int64_t update();
-
-  static std::int64_t steady_time();
 
  private:
   struct Request {
@@ -61,7 +61,7 @@ class MidiService {
   };
   void run();
   bool is_on() const;
-  void handle_requests(std::int64_t now);
+  void handle_requests();
   void handle(const Request& request);
   void finish_learning(std::int64_t now);
   void fail(const CommandOrigin& to, std::string_view address, const std::string& text);

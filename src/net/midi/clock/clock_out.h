@@ -24,7 +24,8 @@ class ClockOut {
 
   /// Sets the newest reading. `now`: s.
   void update(const BeatReading& reading, double now);
-  /// Sends what is due: at most one pulse. Returns the time of the next one, s; nothing while it is stopped.
+  /// Sends the next pulse if its time has come, and start, stop and position before it. Returns the time of the pulse
+  /// after it, s; nothing while the clock is stopped.
   std::optional<double> send_due(double now, const Send& send);
   /// Sends stop, if it is running: at the end of the show, or before the port is closed.
   void stop(const Send& send);

@@ -22,7 +22,7 @@ class Clocks {
   std::vector<Message> drain(std::int64_t now) { return in_.drain(seconds(now)); }
   /// Reads the beat of a snapshot. `now`: ns.
   void update(const engine::Snapshot& snapshot, std::int64_t now);
-  /// Sends what is due to the devices that get a clock. Returns the time of the next call, ns.
+  /// Sends the next pulse to the devices that get a clock, if its time has come. Returns the time of the next call, ns.
   std::optional<std::int64_t> send_due(Devices& devices, std::int64_t now);
   /// Sends stop to them.
   void stop(Devices& devices);

@@ -48,7 +48,7 @@ class MidiPanel : public Panel {
     ImGui::TextDisabled("%s", text);
   }
 
-  // The first line: what is learned, a fault, or the last event.
+  // The first line: the address that is being learned, an error, or the last event.
   static void draw_state(GuiContext& context, const engine::MidiReport& report) {
     ImGui::AlignTextToFramePadding();
     if (!report.learning.empty()) {
