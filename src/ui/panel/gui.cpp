@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -12,6 +15,7 @@
 #include "ui/panel/imgui_versions.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/confirmation.h"
+#include "ui/panel/widgets/number_slider.h"
 
 namespace limber::panel {
 
@@ -38,6 +42,24 @@ constexpr float kHelpMargins = 12;  // pixels, of both sides together
 bool is_of_window(HotkeyAction action) {
   return action == HotkeyAction::toggle_output_window || action == HotkeyAction::toggle_full_screen ||
          action == HotkeyAction::default_view;
+}
+
+// Pixels beside the titles of a row of tabs, and between the tabs.
+struct TabSpacing {
+  float padding = 0, gap = 0;
+  bool fits = true;
+};
+
+// Returns the usual spacing, or a part of it if the titles don't fit otherwise.
+TabSpacing tab_spacing(const std::vector<std::string>& titles) {
+  const TabSpacing usual{ImGui::GetStyle().FramePadding.x, ImGui::GetStyle().ItemSpacing.x};
+  const auto count = static_cast<float>(titles.size());
+  float text = 0;
+  for (const std::string& title : titles) text += text_width(title);
+  const float space = ImGui::GetContentRegionAvail().x - text;
+  const float wanted = 2 * count * usual.padding + (count - 1) * usual.gap;
+  const float part = std::clamp(space / wanted, 0.3F, 1.0F);
+  return {std::floor(part * usual.padding), std::floor(part * usual.gap), part * wanted <= space};
 }
 
 bool frames(HotkeyAction action) {
@@ -306,23 +328,35 @@ void Gui::draw_slot(PanelSlot slot) {
   ImGui::End();
 }
 
+// If the titles don't fit, they come closer, and then lose their badges.
 void Gui::draw_tabs(std::size_t slot, const std::vector<DockedPanel*>& panels) {
   std::size_t& selected = selected_[slot];
   selected = std::min(selected, panels.size() - 1);
+  std::vector<std::string> titles, short_titles;
+  for (const DockedPanel* const panel : panels) {
+    const std::string badge = panel->panel->badge(context_);
+    short_titles.emplace_back(panel->type.title);
+    titles.push_back(short_titles.back() + (badge.empty() ? "" : "  ") + badge);
+  }
+  TabSpacing spacing = tab_spacing(titles);
+  if (!spacing.fits) {
+    titles = std::move(short_titles);
+    spacing = tab_spacing(titles);
+  }
   for (std::size_t i = 0; i < panels.size(); i++) {
     const PanelType& type = panels[i]->type;
-    const std::string badge = panels[i]->panel->badge(context_);
-    const std::string title = fmt::format("{}{}{}", type.title, badge.empty() ? "" : "  ", badge);
-    if (i > 0) ImGui::SameLine();
+    if (i > 0) ImGui::SameLine(0, spacing.gap);
     if (panels.size() == 1) {
       ImGui::AlignTextToFramePadding();
-      ImGui::TextUnformatted(title.c_str());
+      ImGui::TextUnformatted(titles[i].c_str());
       continue;
     }
     ImGui::PushStyleColor(ImGuiCol_Button,
                           packed_color(i == selected ? ThemeColor::field : ThemeColor::panel, i == selected ? 1 : 0));
     ImGui::PushStyleColor(ImGuiCol_Text, packed_color(i == selected ? ThemeColor::text : ThemeColor::secondary));
-    if (ImGui::Button(fmt::format("{}###tab_{}", title, type.name).c_str())) selected = i;
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {spacing.padding, ImGui::GetStyle().FramePadding.y});
+    if (ImGui::Button(fmt::format("{}###tab_{}", titles[i], type.name).c_str())) selected = i;
+    ImGui::PopStyleVar();
     ImGui::PopStyleColor(2);
     context_.names.add(fmt::format("tab:{}", type.name));
   }
