@@ -3,12 +3,16 @@
 
 passed=0
 failed=0
-# Lists of modules, that is folders of tests/; check_module_lists finds names that do not exist. The address sanitizer runs
-# all except those that only read files, the benchmarks, the long tests, and those that start the program
-# (--long asan_app); the thread sanitizer runs those that use several threads. Tests that are too slow there leave
-# themselves out (tests/support/skip.h).
+# Lists of modules, that is folders of tests/; check_module_lists finds names that do not exist. The sanitizers run those
+# that read data of others or use several threads, because three builds of all tests take too long; --long asan and
+# --long tsan run the others, too. Tests that are too slow there leave themselves out (tests/support/skip.h).
+asan_takes="model script engine osc oscquery midi"
+tsan_takes="osc midi stress"
+tsan_takes_long="base engine osc lighting link midi console oscquery stress"
+# Not in the address sanitizer at all, because they only read files or measure; app: --long asan_app.
 asan_leaves_out="app architecture bench first_minutes long"
-tsan_takes="base engine osc lighting link midi console oscquery stress"
+# Not in ./check: --long bench, and the parts of tests/long.
+long_modules="bench long"
 # The modules with the longest tests. They start first, in two halves, to keep all cores busy until the end.
 slow_modules="app engine scenes script sim"
 # Modules that .ci/arm64 runs with qemu. The others do not depend on the architecture, take too long (engine, panel: minutes
@@ -137,7 +141,7 @@ test_modules() {
 check_module_lists() {
   local list name known
   known=" $(test_modules)"
-  for list in asan_leaves_out tsan_takes slow_modules emulated_modules; do
+  for list in asan_takes tsan_takes tsan_takes_long asan_leaves_out long_modules slow_modules emulated_modules; do
     for name in ${!list}; do
       case $known in *" $name "*) pass ;; *) fail "$list names the module $name, but tests/$name has no tests" ;; esac
     done
@@ -150,7 +154,7 @@ step_release() {
   configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
   build build || return
   exec {holder}> >(exec python3 .ci/hold_ports.py)
-  run_tests build $(test_modules long)
+  run_tests build $(test_modules $long_modules)
   exec {holder}>&-
 }
 
@@ -187,19 +191,20 @@ step_valgrind() {
   memcheck_scenes 12 < <(memory_scenes)
 }
 
-step_asan() {
+# with_asan MODULE..., with_tsan MODULE...: builds and runs the tests of modules with a sanitizer.
+with_asan() {
   sanitizer_options
   configure_asan
-  local modules=($(test_modules $asan_leaves_out))
-  build build/asan "${modules[@]/#/test_}" && run_tests build/asan "${modules[@]}"
+  build build/asan "${@/#/test_}" && run_tests build/asan "$@"
 }
-
-step_tsan() {
+with_tsan() {
   sanitizer_options
   configure tsan build/tsan
-  local modules=($tsan_takes)
-  build build/tsan "${modules[@]/#/test_}" && run_tests build/tsan "${modules[@]}"
+  build build/tsan "${@/#/test_}" && run_tests build/tsan "$@"
 }
+
+step_asan() { with_asan $asan_takes; }
+step_tsan() { with_tsan $tsan_takes; }
 
 # run_fuzz NAME ARGUMENTS...: replays the corpus, then generates inputs; interesting ones stay in build/check/fuzz. Writes a
 # log and the exit code. Leak detection runs once at the end, because libFuzzer would run it after every input that makes

@@ -90,10 +90,19 @@ long_lua_difference() {
   unset LIMBER_LUA_SEED LIMBER_LUA_PROGRAMS LIMBER_LUA_PROGRESS
   rm -f "$note.commit"
 }
-# --long asan_app: the program's commands with the address and undefined-behavior sanitizers
+# --long asan: the tests of all modules with the address and undefined-behavior sanitizers
+long_asan() { with_asan $(test_modules $asan_leaves_out); }
+# --long asan_app: the same for the program's commands
 long_asan_app() {
   configure_asan
-  build build/asan test_app limber && run_tests build/asan app
+  build build/asan limber && with_asan app
+}
+# --long tsan: the tests of all modules that use several threads, with the thread sanitizer
+long_tsan() { with_tsan $tsan_takes_long; }
+# --long bench: the tests of the measurements and benchmark programs
+long_bench() {
+  configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
+  build build test_bench limber_measure limber_bench && run_tests build bench
 }
 # --long math: the math functions against MPFR, ten million arguments each, and all floats
 long_math() { tests_at_length 'LongMath*'; }

@@ -5,7 +5,7 @@
 long_portable() {
   local holder calls='eventfd|inotify_|recvmmsg|sendmmsg|epoll_|timerfd_|signalfd|accept4|pipe2|ppoll|sigtimedwait|mallinfo'
   configure release build/portable -B build/portable -DLIMBER_PORTABLE=ON -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=OFF
-  build build/portable || return
+  build build/portable all test_bench || return
   if nm -D --undefined-only build/portable/limber | grep -E " ($calls)" >build/check/portable_calls.log; then
     fail "build/portable/limber makes calls that only Linux has" build/check/portable_calls.log
   else
