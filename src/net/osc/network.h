@@ -23,6 +23,7 @@
 #include "net/osc/sender.h"
 #include "net/osc/streams.h"
 #include "net/osc/subscribers.h"
+#include "net/osc/target_edits.h"
 #include "net/osc/tcp/tcp_peers.h"
 #include "net/osc/unreachable_targets.h"
 
@@ -116,6 +117,9 @@ class Network {
   void update_status_lines();
   TcpCallbacks tcp_callbacks();
   void apply_new_config();
+  bool process_target_requests();
+  std::vector<StreamTarget> edited_targets() const;
+  Result<void> handle_target_request(const TargetEdits::Request& request);
   void retry_listen();
   void retry_look_ups();
   void update_subscribers();
@@ -145,6 +149,7 @@ class Network {
   Outbox outbox_;
   std::shared_ptr<const OscConfig> last_config_;
   OscConfig config_;
+  TargetEdits target_edits_;
   AmplificationLimit amplification_;
   NetworkStatus status_;
   std::jthread thread_;
