@@ -1,5 +1,5 @@
 // Changes of targets while the show plays.
-#include "net/osc/target_edits.h"
+#include "net/osc/targets/target_edits.h"
 
 #include <gtest/gtest.h>
 

@@ -127,7 +127,7 @@ Network::Network(engine::EngineLink& link, OscOptions options, const engine::Tra
   streams_.set_tcp(tcp_);
   link_.wake_network = [wake = wake_] { wake->notify(); };
   link_.on_osc_request = [this](const Message& message, const CommandOrigin& origin) {
-    Result<void> accepted = target_edits_.push(message, origin);
+    Result<void> accepted = config_.edits.push(message, origin);
     wake_->notify();
     return accepted;
   };
@@ -140,10 +140,10 @@ Network::~Network() {
 
 Result<void> Network::start() {
   if (thread_.joinable()) return {};
-  last_config_ = link_.osc_config.read();
+  config_.scene = link_.osc_config.read();
   std::vector<std::string> errors;
   if (const Result<void> opened = sender_.open(); !opened) errors.push_back(opened.error());
-  std::ranges::move(apply(effective_config(options_, last_config_.get())), std::back_inserter(errors));
+  std::ranges::move(apply(effective_config(options_, config_.scene.get())), std::back_inserter(errors));
   std::ranges::move(tcp_.listen(options_.tcp), std::back_inserter(errors));
   // a machine that has just booted may not resolve names yet
   for (const std::string& error : resolve_targets(kStartLookUpTimeout)) log_warning("{}", error);
@@ -167,7 +167,7 @@ void Network::stop() {
   receiver_.close();
   tcp_.close();
   sender_.close();
-  config_ = {};
+  config_.current = {};
   streams_.set_targets({});
   status_.clear();
 }
@@ -217,15 +217,15 @@ void Network::wait_for_events() {
 // next.
 std::vector<std::string> Network::apply(const OscConfig& config) {
   std::vector<std::string> errors = receiver_.listen(config.listen);
-  config_ = config;
+  config_.current = config;
   update_own_endpoints();
-  targets_.begin_config(is_ipv6_only(config_) ? IpVersion::v6 : IpVersion::v4);
+  targets_.begin_config(is_ipv6_only(config_.current) ? IpVersion::v6 : IpVersion::v4);
   return errors;
 }
 
 // Returns the errors, each once per configuration.
 std::vector<std::string> Network::resolve_targets(std::chrono::milliseconds wait) {
-  std::vector<std::string> errors = targets_.resolve(config_.targets, sender_, clock_.steady(), wait);
+  std::vector<std::string> errors = targets_.resolve(config_.current.targets, sender_, clock_.steady(), wait);
   update_streams();
   update_status_lines();
   return errors;
@@ -233,7 +233,7 @@ std::vector<std::string> Network::resolve_targets(std::chrono::milliseconds wait
 
 void Network::update_status_lines() {
   status_.set(receiver_.bound(), tcp_.bound(), targets_.targets());
-  link_.osc.set_targets(targets_text(config_.targets));
+  link_.osc.set_targets(targets_text(config_.current.targets));
 }
 
 TcpCallbacks Network::tcp_callbacks() {
@@ -254,15 +254,15 @@ TcpCallbacks Network::tcp_callbacks() {
 void Network::apply_new_config() {
   const bool resolved = targets_.consume_changed();
   std::shared_ptr<const OscConfig> scene_config = link_.osc_config.read();
-  const bool received = scene_config != last_config_;
-  last_config_ = std::move(scene_config);
+  const bool received = scene_config != config_.scene;
+  config_.scene = std::move(scene_config);
   const bool edited = process_target_requests();
-  OscConfig config = config_;
+  OscConfig config = config_.current;
   if (received || edited) {
-    config = effective_config(options_, last_config_.get());
+    config = effective_config(options_, config_.scene.get());
     config.targets = edited_targets();
   }
-  const bool changed = config != config_;
+  const bool changed = config != config_.current;
   if (!changed && !resolved) return;
   const std::vector<std::string> before = status_lines();
   std::vector<std::string> errors;
@@ -276,7 +276,7 @@ void Network::apply_new_config() {
 // Returns true if targets may have changed.
 bool Network::process_target_requests() {
   bool edited = false;
-  for (const TargetEdits::Request& request : target_edits_.drain()) {
+  for (const TargetEdits::Request& request : config_.edits.drain()) {
     if (same_address(request.message.address, "/list/targets")) {
       Message answer{"/list/targets", {}};
       for (const StreamTarget& target : edited_targets())
@@ -302,11 +302,11 @@ Result<void> Network::handle_target_request(const TargetEdits::Request& request)
   if (origin.source == CommandSource::osc && !origin.ip.is_any() && !tcp_.is_connected({origin.ip, origin.port}) &&
       !amplification_.is_unlimited(origin.ip, clock_.steady()))
     return Error{"a sender in another network must return its /token first, or be in --osc-allow"};
-  return target_edits_.execute(request.message, edited_targets());
+  return config_.edits.execute(request.message, edited_targets());
 }
 
 std::vector<StreamTarget> Network::edited_targets() const {
-  return target_edits_.applied_to(effective_config(options_, last_config_.get()).targets);
+  return config_.edits.applied_to(effective_config(options_, config_.scene.get()).targets);
 }
 
 // Repeats failed look-ups. Their errors were already logged.
@@ -315,7 +315,7 @@ void Network::retry_look_ups() {
 }
 
 void Network::retry_listen() {
-  if (!receiver_.retry_listen(config_.listen)) return;
+  if (!receiver_.retry_listen(config_.current.listen)) return;
   update_own_endpoints();
   update_status_lines();
   for (const std::string& line : status_lines()) log_info("{}", line);

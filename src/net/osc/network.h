@@ -23,9 +23,9 @@
 #include "net/osc/sender.h"
 #include "net/osc/streams.h"
 #include "net/osc/subscribers.h"
-#include "net/osc/target_edits.h"
+#include "net/osc/targets/target_edits.h"
+#include "net/osc/targets/unreachable_targets.h"
 #include "net/osc/tcp/tcp_peers.h"
-#include "net/osc/unreachable_targets.h"
 
 namespace limber::osc {
 
@@ -147,9 +147,11 @@ class Network {
   Subscribers subscribers_;
   PacketQueue packets_;
   Outbox outbox_;
-  std::shared_ptr<const OscConfig> last_config_;
-  OscConfig config_;
-  TargetEdits target_edits_;
+  struct {
+    std::shared_ptr<const OscConfig> scene;
+    OscConfig current;
+    TargetEdits edits;
+  } config_;
   AmplificationLimit amplification_;
   NetworkStatus status_;
   std::jthread thread_;

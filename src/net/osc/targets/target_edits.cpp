@@ -1,5 +1,5 @@
 // A target is identified by host and port.
-#include "net/osc/target_edits.h"
+#include "net/osc/targets/target_edits.h"
 
 #include <algorithm>
 #include <utility>
