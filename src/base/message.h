@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "base/system/net/ip_address.h"
+
 namespace limber {
 
 /// One argument: a number, a boolean, text, or nil. All OSC number types are converted to double.
@@ -36,7 +38,7 @@ enum class CommandSource : std::uint8_t { osc, oscquery, command_line, console, 
 /// The sender of a message, and where a reply goes.
 struct CommandOrigin {
   CommandSource source = CommandSource::osc;
-  std::uint32_t ip = 0;        ///< IPv4 address in host byte order; 0: none.
+  system::IpAddress ip = {};   ///< 0.0.0.0: none.
   std::uint16_t port = 0;      ///< Without an address: number of the gesture (such as a mouse drag) that it belongs to.
   bool is_subscriber = false;  ///< It receives changes; its own changes are recorded to avoid echoing them.
 
@@ -46,7 +48,8 @@ struct CommandOrigin {
   }
 };
 
-/// Returns the sender as text: "192.168.1.5:57120", or the kind of source if there is no address: "console". [any]
+/// Returns the sender as text: "192.168.1.5:57120" or "[fe80::1%eth0]:57120", or the kind of source if there is no
+/// address: "console". [any]
 std::string sender_text(const CommandOrigin& origin);
 
 }  // namespace limber

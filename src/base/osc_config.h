@@ -34,11 +34,12 @@ struct StreamTarget {
   bool operator==(const StreamTarget&) const = default;
 };
 
-/// A local IPv4 address and a port to listen on.
+/// A local address and a port to listen on.
 struct ListenAddress {
   std::string address = "127.0.0.1";
   std::uint16_t port = 9003;
   bool optional = false;  ///< If it can't be opened, this is a warning, and opening it is tried again.
+  bool shared = false;    ///< Other programs may open the UDP port, too.
 
   bool operator==(const ListenAddress&) const = default;
 };

@@ -26,7 +26,7 @@ struct Session {
           const sim::WorldSetup& setup, bool lockstep = false)
       : world(store, setup),
         transport(world, link.health, lockstep),
-        counters(store, link.counters),
+        counters(store, link.counters, link.osc),
         midi_node(store, link.midi),
         preset_node(world, presets),
         cue_node(world, cues),

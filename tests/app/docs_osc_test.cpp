@@ -45,6 +45,7 @@ class LocalEngine {
     link_.on_scene_request = [](const Message&, const CommandOrigin&) {
     };  // scenes and takes are covered by another test
     link_.on_midi_request = link_.on_scene_request;
+    link_.on_osc_request = [](const Message&, const CommandOrigin&) { return Result<void>(); };
     engine_ = std::make_unique<engine::Engine>(link_, options);
     const Result<void> started = engine_->start();
     EXPECT_TRUE(started.ok()) << started.error();

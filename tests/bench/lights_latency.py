@@ -3,8 +3,8 @@
 
     tests/bench/lights_latency.py build/limber [SECONDS]
 
-Plays sixteen fixtures and three dancers of 67 joints at 120 frames per second, with a VMC performer beside them, all by
-loopback. Every fourth of a second a joint jumps by a meter, which a route turns into the dimmer of a fixture; the time
+Plays sixteen fixtures and three dancers of 67 joints at 120 frames per second, with a VMC performer and sixteen
+trackers of PosiStageNet beside them, all by loopback. Every fourth of a second a joint jumps by a meter, which a route turns into the dimmer of a fixture; the time
 until the first Art-Net packet with the new value is a sample. Prints the distribution in ms; the bar is one tick + 2 ms
 for 99 % and two ticks for 99.9 %.
 """
@@ -22,6 +22,7 @@ import time
 TICK = 1 / 60
 JOINTS = 67
 RATE = 120
+TRACKERS = 16
 SCENE = """
 for i = 1, 3 do
   local joints = {}
@@ -30,6 +31,7 @@ for i = 1, 3 do
     messages = { ["/mocap/" .. i .. "/joint/pos_world"] = "x y z" }, joints = joints, max_speed = 1e4 })
 end
 sim:add_mocap("vmc", { source = "vmc" })
+sim:add_mocap("psn", { source = "psn:127.0.0.1:PSN_PORT" })
 for i = 1, 16 do sim:add_fixture("f" .. i, { profile = "dimmer", universe = 1, address = i, dimmer = 0 }) end
 sim:add_route("light", { from = "/physics/mocap/dancer1/joint/j1/position.x", to = "/lighting/fixture/f1/dimmer",
   input = { 0, 1 }, output = { 0, 1 } })
@@ -49,22 +51,42 @@ def bone(name, values):
     return padded("/VMC/Ext/Bone/Pos") + padded(",s" + "f" * 7) + padded(name) + struct.pack(">7f", *values)
 
 
+def chunk(number, content, has_chunks=False):
+    """A chunk of PosiStageNet."""
+    return struct.pack("<I", number | len(content) << 16 | has_chunks << 31) + content
+
+
+def psn_header(frame):
+    return chunk(0, struct.pack("<QBBBB", round(1e6 * frame / RATE), 2, 3, frame % 256, 1))
+
+
+def psn_names(frame):
+    names = b"".join(chunk(k, chunk(0, f"tracker {k}".encode()), True) for k in range(TRACKERS))
+    return chunk(0x6756, psn_header(frame) + chunk(1, b"bench") + chunk(2, names, True), True)
+
+
+def psn_places(frame):
+    places = [(math.sin(0.01 * frame + k), 1, k) for k in range(TRACKERS)]
+    trackers = b"".join(chunk(k, chunk(0, struct.pack("<3f", *place)), True) for k, place in enumerate(places))
+    return chunk(0x6755, psn_header(frame) + chunk(1, trackers, True), True)
+
+
 def ports():
-    """Two free UDP ports on loopback: a closed socket for the program, an open one for its light."""
-    program = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    program.bind(("127.0.0.1", 0))
-    light = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    light.bind(("127.0.0.1", 0))
-    port = program.getsockname()[1]
-    program.close()
-    return port, light
+    """Three free UDP ports on loopback: closed sockets for the program, an open one for its light."""
+    sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(3)]
+    for each in sockets:
+        each.bind(("127.0.0.1", 0))
+    numbers = [each.getsockname()[1] for each in sockets[:2]]
+    for each in sockets[:2]:
+        each.close()
+    return (*numbers, sockets[2])
 
 
 def measure(limber, seconds):
-    port, light = ports()
+    port, psn_port, light = ports()
     folder = tempfile.TemporaryDirectory()
     scene = pathlib.Path(folder.name) / "latency.lua"
-    scene.write_text(SCENE)
+    scene.write_text(SCENE.replace("PSN_PORT", str(psn_port)))
     show = subprocess.Popen(
         [limber, "play", str(scene), "--headless", "--quiet", "--osc-in", f"127.0.0.1:{port}", "--osc-out", "off",
          "--query", "off", "--lights", "--lights-out", f"artnet:127.0.0.1:{light.getsockname()[1]},rate=60"])
@@ -84,6 +106,9 @@ def measure(limber, seconds):
                 places = [value if dancer == 1 else 0, 0, 1] + [math.sin(0.01 * frame + k) for k in range(3 * JOINTS - 3)]
                 out.sendto(floats(f"/mocap/{dancer}/joint/pos_world", places), to)
             out.sendto(bone("Hips", [0, 1, 0, 0, 0, 0, 1]), to)
+            if frame % RATE == 1:
+                out.sendto(psn_names(frame), ("127.0.0.1", psn_port))
+            out.sendto(psn_places(frame), ("127.0.0.1", psn_port))
         if select.select([light], [], [], max(0, min(next_frame - time.monotonic(), 0.01)))[0]:
             packet = light.recv(2048)
             arrived = time.monotonic()

@@ -111,6 +111,31 @@ TEST(TakeText, TicksRoundTrip) {
   }
 }
 
+TEST(TakeText, SendersHaveAddressesOfBothKinds) {
+  const CommandOrigin senders[] = {{CommandSource::osc, 0x0a000001U, 9000},
+                                   {CommandSource::oscquery, system::IpAddress(0xfe80ULL << 48U, 1, 3), 9001},
+                                   {CommandSource::osc, system::IpAddress(0, 0x0a000001U), 9000},
+                                   {CommandSource::midi}};
+  std::string text;
+  TakeEncoder out(text);
+  InputCodec encoder;
+  for (int round = 0; round < 2; round++) {
+    for (const CommandOrigin& sender : senders) encoder.encode(out, message("/a", 1), sender);
+  }
+  TakeDecoder in(text);
+  InputCodec decoder;
+  for (int round = 0; round < 2; round++) {
+    for (const CommandOrigin& sender : senders) {
+      InputRecord record;
+      ASSERT_TRUE(decoder.decode(in, record));
+      EXPECT_EQ(record.origin, sender);
+      EXPECT_EQ(record.message.address, "/a");
+      EXPECT_EQ(record.message.args.size(), 1u);
+    }
+  }
+  EXPECT_TRUE(in.at_end());
+}
+
 TEST(TakeText, ReadingATickReplacesThePreviousOne) {
   InputLog log;
   InputCodec decoder;

@@ -200,7 +200,7 @@ TEST(Network, ResolvesNamesInBackground) {
   const Client numeric, named;
   std::promise<void> answer;
   const std::shared_future<void> answered = answer.get_future().share();
-  const ResolveFunction slow = [answered](const std::string& host, std::uint16_t port) -> Result<Endpoint> {
+  const ResolveFunction slow = [answered](const std::string& host, std::uint16_t port, IpVersion) -> Result<Endpoint> {
     answered.wait();
     if (host == "unknown.example") return Error{"no IPv4 address for 'unknown.example'"};
     return Endpoint{0x7f000001, port};
@@ -245,7 +245,7 @@ TEST(Network, RetriesFailedLookUp) {
   std::atomic<bool> known{false};
   NetClock clock;
   clock.steady = [&ns] { return ns.load(); };
-  const ResolveFunction look_up = [&](const std::string&, std::uint16_t port) -> Result<Endpoint> {
+  const ResolveFunction look_up = [&](const std::string&, std::uint16_t port, IpVersion) -> Result<Endpoint> {
     const bool found = known.load();
     looked_up++;
     if (!found) return Error{"no IPv4 address"};

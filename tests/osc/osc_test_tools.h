@@ -44,27 +44,25 @@ struct ManualClock {
 /// A client's socket on this machine.
 class Client {
  public:
-  Client() : socket_(std::move(system::open_udp({0x7f000001, 0}).value())) {
+  explicit Client(const IpAddress& at = 0x7f000001U) : socket_(std::move(system::open_udp({at, 0}).value())) {
     const int size = 4 << 20;
     setsockopt(socket_.fd(), SOL_SOCKET, SO_RCVBUF, &size, sizeof size);
   }
 
   Endpoint end() const { return socket_.local(); }
   void send(const Endpoint& to, std::string_view bytes) const {
-    const sockaddr_in address = system::socket_address(to);
-    sendto(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr*>(&address), sizeof address);
+    const system::SocketAddress address(to);
+    sendto(socket_.fd(), bytes.data(), bytes.size(), 0, address.get(), address.length());
   }
   /// Returns the next datagram and its sender, or nothing if none arrives within `ms`.
   std::optional<std::string> receive(int ms = kTimeoutMs, Endpoint* from = nullptr) const {
     pollfd p{socket_.fd(), POLLIN, 0};
     if (poll(&p, 1, ms) <= 0) return std::nullopt;
     std::string bytes(65536, '\0');
-    sockaddr_in address{};
-    socklen_t length = sizeof address;
-    const auto size =
-        recvfrom(socket_.fd(), bytes.data(), bytes.size(), 0, reinterpret_cast<sockaddr*>(&address), &length);
+    system::SocketAddress address;
+    const auto size = recvfrom(socket_.fd(), bytes.data(), bytes.size(), 0, address.get(), address.receive_length());
     if (size < 0) return std::nullopt;
-    if (from != nullptr) *from = system::endpoint_of(address);
+    if (from != nullptr) *from = address.endpoint();
     bytes.resize(static_cast<std::size_t>(size));
     return bytes;
   }

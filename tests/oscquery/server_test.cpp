@@ -350,7 +350,7 @@ TEST(QueryServer, WarnsIfOpenToTheNetwork) {
 TEST(QueryServer, AcceptsAllowedAddressesOnly) {
   engine::EngineLink link;
   QueryHost fake = fake_query_host();
-  fake.is_allowed = [](std::uint32_t ip) { return ip != 0x7f000001; };
+  fake.is_allowed = [](const system::IpAddress& ip) { return !ip.is_loopback(); };
   QueryServer server(link, fake);
   ASSERT_TRUE(server.start({"127.0.0.1", 0}).ok());
   WebClient client(server.port());

@@ -31,5 +31,31 @@ TEST(PanelOsc, ThinsOutFrequentAddresses) {
   EXPECT_EQ(fixture.clipboard, "/once");
 }
 
+TEST(PanelOsc, AddsAndRemovesTargets) {
+  PanelFixture fixture;
+  std::vector<std::string> requests;
+  fixture.show.link.on_osc_request = [&](const Message& message, const CommandOrigin& origin) -> Result<void> {
+    EXPECT_EQ(origin.source, CommandSource::panel);
+    requests.push_back(message.address + (message.args.empty() ? "" : " " + message.args[0].text));
+    return {};
+  };
+  fixture.show.link.osc.set_targets("127.0.0.1:9005 (pos at 60 Hz)\n[::1]:9006 (pos at 30 Hz)");
+  fixture.frames(3);
+  fixture.click("osc.targets");
+  fixture.frames(2);
+  fixture.click("osc.target1.remove");
+  fixture.click("osc.target");
+  fixture.type("pi.local:9000,rate=10");
+  fixture.frames(2);
+  fixture.click("osc.target.add");
+  fixture.click("osc.target.reset");
+  fixture.frames(3);
+  EXPECT_EQ(requests, (std::vector<std::string>{"/osc/target/remove [::1]:9006",
+                                                "/osc/target/add pi.local:9000,rate=10", "/osc/target/reset"}));
+  fixture.show.link.osc.set_targets("");
+  fixture.frames(3);
+  EXPECT_FALSE(fixture.is_visible("osc.target0"));
+}
+
 }  // namespace
 }  // namespace limber::panel::test

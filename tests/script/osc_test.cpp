@@ -81,6 +81,22 @@ end)
   EXPECT_EQ(text_of(fixture.host.direct[1].second), "/c 1");
 }
 
+TEST(Osc, SendsToIPv6) {
+  ScriptFixture fixture;
+  ASSERT_EQ(fixture.play(R"(
+sim:on_start(function()
+  local to = osc:to("[2001:db8::7]:7000")
+  to:send("/a", tostring(to), tostring(osc:to("10.0.0.5:9000")))
+end)
+)"),
+            "");
+  ASSERT_EQ(fixture.host.direct.size(), 1u);
+  const CommandOrigin& to = fixture.host.direct[0].first;
+  EXPECT_EQ(to.ip, system::IpAddress(0x20010db8ULL << 32U, 7));
+  EXPECT_EQ(to.port, 7000);
+  EXPECT_EQ(text_of(fixture.host.direct[0].second), "/a '[2001:db8::7]:7000' '10.0.0.5:9000'");
+}
+
 TEST(Osc, AWrongMessageIsNotSentAtAll) {
   for (const char* bad :
        {"osc:send('/a', 1, print)", "osc:send('/a', 1, 0 / 0)", "osc:send('a', 1)", "osc:send('/a', nil)",
@@ -133,6 +149,10 @@ TEST(Osc, ReportsMistakes) {
       {"osc:stream_to('a:1', { streams = 'poss' })", "osc:stream_to: there is no stream 'poss'; did you mean 'pos'?"},
       {"osc:stream_to('a:1', { bundle = 99 })", "osc:stream_to: bundle is 'off', 1472, 8192 or 65504, not 99"},
       {"osc:stream_to('a:1', { bodie = 'x' })", "osc:stream_to: opts has no 'bodie'; did you mean 'bodies'?"},
+      {"osc:to('::1:9000')", "'::1:9000' is not an address; write \"host:port\", such as \"127.0.0.1:9000\""},
+      {"osc:to('[::1]')", "'[::1]' is not an address; write \"host:port\", such as \"127.0.0.1:9000\""},
+      {"osc:to('[fe80::1]:9')", "fe80::1 is valid on one network only; add its interface, such as [fe80::1%eth0]"},
+      {"osc:to('[fe80::1%none0]:9')", "'fe80::1%none0' names a network interface that does not exist"},
       {"osc:to('studio:9000')", "'studio' is a host name, which scripts can't resolve; write a numeric address"},
       {"osc:to('1.2.3.400:9000')", "'1.2.3.400' is a host name, which scripts can't resolve; write a numeric address"},
   };

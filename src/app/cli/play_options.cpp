@@ -55,7 +55,8 @@ CLI::Validator plain_count() {
 
 // options of OSC and OSCQuery
 void add_network(CLI::App& play, NetworkOptions& o) {
-  play.add_option("--osc-in", o.osc_in, "Address of OSC input; default 127.0.0.1:9003.")->type_name("[ADDR:]PORT|off");
+  play.add_option("--osc-in", o.osc_in, "Address of OSC input; default 127.0.0.1:9003. IPv6: [::]:9003.")
+      ->type_name("[ADDR:]PORT|off");
   play.add_option("--osc-tcp", o.osc_tcp, "Address of OSC input by TCP, with SLIP or with lengths; default: none.")
       ->type_name("[ADDR:]PORT|off");
   play.add_option("--osc-allow", o.osc_allow, "Accept only these senders, such as 192.168.1.0/24; may be repeated.")
@@ -93,6 +94,10 @@ void add_network(CLI::App& play, NetworkOptions& o) {
   play.add_flag("--link", o.link,
                 "Join an Ableton Link session: sim.clock follows its beat, and other programs follow /clock/tempo.");
   play.add_flag("--osc-optional", o.osc_optional, "Continue if a port is not available.");
+  play.add_flag(
+      "--osc-share", o.osc_share,
+      "Let other programs open the UDP ports of --osc-in, too. All of them receive broadcasts and multicasts; "
+      "anything else reaches one of them only.");
 }
 
 // a scene behind --midi would be taken for its value

@@ -55,7 +55,7 @@ bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<L
   network.stop();
   if (open) {
     for (const ListenAddress& at : osc_in)
-      print_check("ok", "ports", fmt::format("OSC in {}:{} is free", at.address, at.port));
+      print_check("ok", "ports", fmt::format("OSC in {} is free", system::host_port_text(at.address, at.port)));
   } else {
     print_check("fail", "ports", open.error());
   }
@@ -65,7 +65,8 @@ bool check_ports(const std::vector<ListenAddress>& osc_in, const std::optional<L
   query.stop();
   if (panel) {
     print_check("ok", "ports",
-                fmt::format("OSCQuery and remote panel {}:{} (TCP) is free", query_at->address, query_at->port));
+                fmt::format("OSCQuery and remote panel {} (TCP) is free",
+                            system::host_port_text(query_at->address, query_at->port)));
   } else {
     print_check("fail", "ports", panel.error());
   }

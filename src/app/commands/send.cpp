@@ -36,9 +36,9 @@ constexpr const char* kDelayedReplies[] = {"/transport/scene", "/list/scenes", "
 constexpr const char* kProbeAddress = "/physics/sim/tick";  // queried after the message
 
 Result<system::Endpoint> endpoint_named(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  const std::string host = colon == std::string::npos ? "127.0.0.1" : text.substr(0, colon);
-  const std::optional<double> port = parse_number(text.substr(colon + 1));
+  const system::HostPort parts = system::split_host_port(text);
+  const std::string host = parts.host.empty() ? "127.0.0.1" : std::string(parts.host);
+  const std::optional<double> port = parse_number(parts.port);
   if (!port || *port < 1 || *port > 65535 || *port != static_cast<std::uint16_t>(*port))
     return Error{fmt::format("--to '{}' is not an address; write --to [HOST:]PORT", printable(text))};
   Result<system::Endpoint> at = system::resolve(host, static_cast<std::uint16_t>(*port));
@@ -119,9 +119,10 @@ int send_command(const SendCommand& command) {
   }
   const Result<system::Endpoint> to = endpoint_named(command.to);
   if (!to) return fail(kUsageError, "send: " + to.error());
-  const Result<system::UdpSocket> socket = system::open_udp({});
+  const system::Endpoint any{to->ip.is_v6 ? system::IpAddress(0, 0) : system::IpAddress(), 0};
+  const Result<system::UdpSocket> socket = system::open_udp(any);
   if (!socket) return fail(kMachineError, "send: " + socket.error());
-  const Result<system::UdpSocket> queries = system::open_udp({});
+  const Result<system::UdpSocket> queries = system::open_udp(any);
   if (!queries) return fail(kMachineError, "send: " + queries.error());
   if (!send_message(socket->fd(), *to, message, command.tags)) {
     return fail(kMachineError,

@@ -79,6 +79,7 @@ Result<Message> parse_value(const std::string& text, const ValueOption& option) 
 Result<osc::OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
   osc::OscOptions osc;
   osc.optional = options.osc_optional;
+  osc.shared = options.osc_share;
   if (!options.osc_in.empty()) {
     auto in = osc::parse_osc_in(options.osc_in);
     if (!in) return Error{in.error()};
@@ -86,11 +87,9 @@ Result<osc::OscOptions> parse_osc(const NetworkOptions& options, bool fast) {
   } else if (fast) {
     osc.in.emplace();  // batch runs may run in parallel: no ports unless requested
   }
-  if (!options.osc_tcp.empty()) {
-    auto tcp = osc::parse_listen("--osc-tcp", options.osc_tcp);
-    if (!tcp) return Error{tcp.error()};
-    osc.tcp = std::move(*tcp);
-  }
+  auto tcp = osc::parse_listen("--osc-tcp", options.osc_tcp.empty() ? "off" : options.osc_tcp);
+  if (!tcp) return Error{tcp.error()};
+  osc.tcp = std::move(*tcp);
   for (const std::string& text : options.osc_out) {
     auto out = osc::parse_osc_out(text);
     if (!out) return Error{out.error()};

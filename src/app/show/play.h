@@ -33,6 +33,7 @@ struct NetworkOptions {
   std::string osc_allow;
   std::vector<std::string> osc_out;
   bool osc_optional = false;
+  bool osc_share = false;
   std::string query;  ///< Empty: not given.
   std::vector<std::string> query_names;
   bool lights = false;                  ///< Lighting output is armed from the start.

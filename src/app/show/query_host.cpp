@@ -45,7 +45,7 @@ oscquery::QueryHost query_host(osc::Network& network, std::vector<osc::Cidr> all
     const std::vector<system::Endpoint> bound = network.bound();
     return bound.empty() ? std::nullopt : std::optional(bound.front().port);
   };
-  host.is_allowed = [allow = std::move(allow)](std::uint32_t ip) { return osc::is_allowed(allow, ip); };
+  host.is_allowed = [allow = std::move(allow)](const system::IpAddress& ip) { return osc::is_allowed(allow, ip); };
   return host;
 }
 
@@ -60,7 +60,7 @@ std::optional<ListenAddress> query_address(const std::optional<std::vector<Liste
 std::string query_line(const std::optional<ListenAddress>& at, const oscquery::QueryServer& server) {
   std::string line = "OSCQuery off";
   if (at && server.port() != 0)
-    line = fmt::format("OSCQuery and remote panel http://{}:{}/", at->address, server.port());
+    line = fmt::format("OSCQuery and remote panel http://{}/", system::host_port_text(at->address, server.port()));
   return line;
 }
 

@@ -28,6 +28,7 @@ CommandExecutor::Execution CommandExecutor::execute(Message& message, const Comm
     source.record(message, origin, false);
   }
   if (outcome.kind == Outcome::Kind::take_request) outcome = source.request_take(message);
+  if (outcome.kind == Outcome::Kind::osc_request) outcome = source.request_osc(message, origin);
   if (outcome.kind == Outcome::Kind::midi_request) outcome = source.request_midi(message, origin);
   std::optional<CueRequest> cue_request = session.cue_node.consume_request();
   if (outcome.kind == Outcome::Kind::cue_request) cue_request = {CueRequest::Kind::jump, message.args.front()};

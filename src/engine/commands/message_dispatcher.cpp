@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "engine/commands/midi_commands.h"
 #include "engine/commands/route_commands.h"
+#include "engine/commands/service_requests.h"
 #include "sim/mocap/mocap_list.h"
 #include "sim/shapes/shape.h"
 #include "sim/visuals/visuals.h"
@@ -112,7 +112,9 @@ MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
     entries_[std::string(special.address)].handler = is_of("/preset/")  ? &MessageDispatcher::execute_preset
                                                      : is_of("/take/")  ? &MessageDispatcher::request_take
                                                      : is_of("/route/") ? &MessageDispatcher::execute_route
-                                                     : is_of("/midi/")  ? &MessageDispatcher::request_midi
+                                                     : is_of("/midi/")  ? &MessageDispatcher::request_service
+                                                     : is_of("/osc/")   ? &MessageDispatcher::request_service
+                                                     : is_of("/cue/")   ? &MessageDispatcher::request_cue_edit
                                                                         : &MessageDispatcher::answer_list;
   }
   entries_["/list/presets"].handler = &MessageDispatcher::execute_preset;
@@ -125,8 +127,7 @@ MessageDispatcher::MessageDispatcher(sim::World& world, Presets* presets,
   entries_["/list/health"].handler = &MessageDispatcher::answer_health;
   entries_["/list/cues"].handler = &MessageDispatcher::answer_cues;
   entries_["/cue/jump"].handler = &MessageDispatcher::request_cue;
-  for (const char* edit : {"/cue/add", "/cue/remove", "/cue/move", "/cue/set"})
-    entries_[edit].handler = &MessageDispatcher::request_cue_edit;
+  entries_["/list/targets"].handler = &MessageDispatcher::request_service;
   entries_["/list/scenes"].handler = &MessageDispatcher::request_scene;
   entries_["/transport/scene"].handler = &MessageDispatcher::request_scene;
   for (const auto& [address, entry] : entries_) addresses_.push_back(address);
@@ -474,7 +475,7 @@ Outcome MessageDispatcher::execute_route(const Message& message) {
   return edit_routes(world_, normalized_address(message.address, buffer), message.args);
 }
 
-Outcome MessageDispatcher::request_midi(const Message& message) { return check_midi_request(message); }
+Outcome MessageDispatcher::request_service(const Message& message) { return check_service_request(message); }
 
 Outcome MessageDispatcher::request_take(const Message& message) {
   std::array<char, 96> buffer;
@@ -487,9 +488,7 @@ Outcome MessageDispatcher::request_take(const Message& message) {
   } else if (args.size() > 1 || (args.size() == 1 && args[0].is_text())) {
     return Outcome::rejected("takes no arguments");
   }
-  Outcome outcome;
-  outcome.kind = Outcome::Kind::take_request;
-  return outcome;
+  return request_of(Outcome::Kind::take_request, "takes need a show that plays. Record with --record FILE");
 }
 
 Outcome MessageDispatcher::reject_unsupported(const Message&) {

@@ -112,7 +112,7 @@ class MessageDispatcher {
   Outcome execute_preset(const Message& message);
   Outcome execute_route(const Message& message);
   Outcome request_take(const Message& message);
-  Outcome request_midi(const Message& message);
+  Outcome request_service(const Message& message);
 
   sim::World& world_;
   Presets* presets_;

@@ -18,6 +18,7 @@ struct Outcome {
     take_request,   ///< A request about takes, which the engine executes at the end of the tick.
     cue_request,    ///< A request to start the cue that its argument names.
     midi_request,   ///< A request to learn or forget the MIDI control of an address.
+    osc_request,    ///< A request about the targets of OSC.
     scene_request,  ///< A request about scenes, which needs file access: to be passed to EngineLink::on_scene_request.
   };
   Kind kind = Kind::applied;

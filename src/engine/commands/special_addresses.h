@@ -60,6 +60,12 @@ inline constexpr SpecialAddress kSpecialAddresses[] = {
      "The next MIDI control that moves sets this address from now on; component: of a vector, from 1; mode: absolute, "
      "relative, relative_offset, relative_sign, toggle, momentary or trigger. Without arguments: stops learning."},
     {"/midi/forget", "address [component]", "Removes the MIDI controls of an address."},
+    {"/list/targets", "", "Answers with the targets of OSC output and their settings, in their order."},
+    {"/osc/target/add", "target [setting ...]",
+     "Adds a target of OSC output, such as 192.168.1.5:9005, or changes the settings of one: rate=30, streams=pos+rot, "
+     "bodies=arm*, bundle=1472, errors=on."},
+    {"/osc/target/remove", "target", "Removes a target of OSC output, given by host and port."},
+    {"/osc/target/reset", "", "Restores the targets of the command line or the scene."},
     {"/take/record", "[name]", "Resets the scene and records all input from its start, so that it can be replayed."},
     {"/take/stop", "", "Ends the recording of a take and completes its file, or ends the take that plays."},
     {"/take/play", "[name]",

@@ -149,7 +149,7 @@ void UndoStack::trim() {
 // True if another controller is still extending the step, so that an undo would be overwritten at once.
 bool UndoStack::extended_by_other(const Step& step, const sim::World& world) const {
   const bool same_source = step.source.source == source_.source && step.source.ip == source_.ip &&
-                           (source_.ip == 0 || step.source.port == source_.port);
+                           (source_.ip.is_any() || step.source.port == source_.port);
   return running_ && !same_source && world.time() - step.time <= kMergeSeconds;
 }
 

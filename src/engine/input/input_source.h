@@ -46,6 +46,10 @@ class InputSource {
   /// Passes on a request to learn or forget a MIDI control. The default ignores it: a replay changes no map.
   virtual Outcome request_midi(const Message&, const CommandOrigin&) { return {}; }
 
+  /// Passes on a request about the targets of OSC. The default ignores it: a replay sends to the targets of its own
+  /// command line.
+  virtual Outcome request_osc(const Message&, const CommandOrigin&) { return {}; }
+
   /// Input of a run of the scene.
   struct SceneFiles {
     std::shared_ptr<const script::Sources> sources;  ///< Read instead of the files on disk; null: the files on disk.

@@ -212,6 +212,12 @@ Outcome LiveInput::request_midi(const Message& message, const CommandOrigin& ori
   return {};
 }
 
+Outcome LiveInput::request_osc(const Message& message, const CommandOrigin& origin) {
+  if (!show_.link.on_osc_request) return Outcome::rejected("OSC is off; it needs a show that plays in real time");
+  const Result<void> accepted = show_.link.on_osc_request(message, origin);
+  return accepted ? Outcome{} : Outcome::rejected(accepted.error());
+}
+
 bool LiveInput::must_rerun() {
   if (!show_.link.on_rerun || !show_.options.in_real_time()) return true;
   show_.link.on_rerun();

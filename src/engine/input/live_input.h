@@ -96,6 +96,7 @@ class LiveInput final : public InputSource {
   Outcome request_cue(const CueRequest& request) override { return cues_.request(request); }
   bool starts_cue(const Message& message) override { return cues_.starts(message); }
   Outcome request_midi(const Message& message, const CommandOrigin& origin) override;
+  Outcome request_osc(const Message& message, const CommandOrigin& origin) override;
   bool must_rerun() override;
   bool is_paced() const override;
   void end_pass() override;

@@ -35,12 +35,21 @@ const PropertyTable& CounterNode::table() {
                   "Requests (play, step, ...) discarded because of a later panic, pause or end of a take."),
           counter("unheard", "Messages that osc:on handlers missed because their time budget was exceeded."),
           counter("disabled", "Handlers (osc:on) that failed and are disabled until the scene is saved."),
+          text_from<&CounterNode::read_targets>(
+              text("targets", "Targets of OSC output, one per line: host and port, then the settings in parentheses.")),
       });
   return table;
 }
 
-CounterNode::CounterNode(Store& store, const Counters& counters)
-    : store_(store), counters_(counters), id_(store.add(table(), store.root(), "osc", this)) {}
+CounterNode::CounterNode(Store& store, const Counters& counters, const OscStatus& status)
+    : store_(store), counters_(counters), status_(status), id_(store.add(table(), store.root(), "osc", this)) {}
+
+std::string_view CounterNode::read_targets() const {
+  const std::uint64_t version = status_.version();
+  if (version != version_) targets_ = status_.targets();
+  version_ = version;
+  return targets_;
+}
 
 void CounterNode::publish() {
   // in the order of the properties

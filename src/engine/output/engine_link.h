@@ -6,6 +6,7 @@
 #include <functional>
 #include <utility>
 
+#include "base/result.h"
 #include "base/threads/bounded_queue.h"
 #include "base/threads/latest.h"
 #include "engine/commands/command.h"
@@ -15,6 +16,7 @@
 #include "engine/output/lighting_status.h"
 #include "engine/output/message_log.h"
 #include "engine/output/midi_status.h"
+#include "engine/output/osc_status.h"
 #include "engine/output/snapshot.h"
 #include "engine/output/value_snapshot.h"
 
@@ -47,6 +49,7 @@ struct EngineLink {
   MessageLog message_log;   ///< Messages received and sent by OSC and OSCQuery, for monitors.
   LightingStatus lighting;  ///< Of the output to lights.
   MidiStatus midi;          ///< Of MIDI devices.
+  OscStatus osc;            ///< Of the targets of OSC.
   ChangeLog changes;        ///< Recent changes of values and their sources, for monitors.
 
   /// Called after a push to `output_queue`, `osc_config` or `value_snapshots`, for example to signal an eventfd. Set
@@ -62,6 +65,9 @@ struct EngineLink {
   std::function<void(const Message&, const CommandOrigin&)> on_scene_request;
   /// Called with /midi/learn and /midi/forget. Null: MIDI is off. Set before start.
   std::function<void(const Message&, const CommandOrigin&)> on_midi_request;
+  /// Called with /osc/target/… and /list/targets; returns the error in the arguments. Null: OSC is off. Set before
+  /// start.
+  std::function<Result<void>(const Message&, const CommandOrigin&)> on_osc_request;
   /// Called after a push to `command_queue`, so that a paused engine need not poll. Set by the engine.
   std::function<void()> wake_engine = [] {};
 

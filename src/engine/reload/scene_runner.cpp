@@ -192,7 +192,19 @@ Result<void> SceneRunner::apply_override(const Message& message, std::string_vie
     return Error{
         fmt::format("{}: this is a query, not a value; set a path, such as /physics/sim/gravity=0,0,-1.6", option)};
   }
-  if (outcome.kind != Outcome::Kind::applied) return Error{fmt::format("{}: {}", option, outcome.error)};
+  // otherwise the first message of the show would execute it
+  if (show_.session->cue_node.consume_request() || outcome.kind == Outcome::Kind::cue_request) {
+    return Error{fmt::format(
+        "{}: cues start while the show plays. Give the first cue a begin time in the cue file, or send it later with "
+        "limber send",
+        option)};
+  }
+  if (outcome.kind != Outcome::Kind::applied) {
+    return Error{fmt::format("{}: {}", option,
+                             outcome.error.empty()
+                                 ? "this is a request to a show that plays; send it later with limber send"
+                                 : outcome.error)};
+  }
   if (outcome.clamped != nullptr) show_.output().report_clamped(message, *outcome.clamped);
   show_.overrides.add(message);
   return {};

@@ -51,6 +51,9 @@ Arg read_arg(TakeDecoder& in, char type) {
 
 // bytes before the types in a header: controller, ip, port, types, 0, address
 constexpr std::size_t kTypesOffset = 7;
+// added to the controller of a sender with an IPv6 address, whose 16 bytes and zone replace the 4 bytes
+constexpr std::uint8_t kIpv6 = 0x80;
+constexpr std::size_t kIpv6Bytes = 16;  // more than for IPv4
 
 }  // namespace
 
@@ -119,8 +122,16 @@ void InputCodec::encode(TakeEncoder& out, const Message& message, const CommandO
   key_.clear();
   TakeEncoder key(key_);
   key.byte(static_cast<std::uint8_t>(origin.source));
-  key.fixed_int(origin.ip, 4);
+  if (origin.ip.is_v6) key_.back() = static_cast<char>(key_.back() | kIpv6);
+  if (origin.ip.is_v6) {
+    key.fixed_int(origin.ip.high, 8);
+    key.fixed_int(origin.ip.low, 8);
+    key.fixed_int(origin.ip.zone, 4);
+  } else {
+    key.fixed_int(origin.ip.low, 4);
+  }
   key.fixed_int(origin.port, 2);
+  const std::size_t types = key_.size();
   for (const Arg& arg : message.args) key_.push_back(type_of(arg));
   key_.push_back('\0');
   key_.append(message.address);
@@ -134,20 +145,29 @@ void InputCodec::encode(TakeEncoder& out, const Message& message, const CommandO
     out.varint(add_to_table ? 1 : 0);
     out.string(key_);
   }
-  for (std::size_t i = 0; i < message.args.size(); i++) write_arg(out, key_[kTypesOffset + i], message.args[i]);
+  for (std::size_t i = 0; i < message.args.size(); i++) write_arg(out, key_[types + i], message.args[i]);
 }
 
 std::optional<InputCodec::Header> InputCodec::parse_header(std::string_view key) {
-  const std::size_t end = key.size() > kTypesOffset ? key.find('\0', kTypesOffset) : key.npos;
-  if (end == key.npos) return {};
   TakeDecoder in(key);
-  const std::uint8_t source = in.byte();
+  const std::uint8_t first = in.byte();
+  const bool is_v6 = (first & kIpv6) != 0;
+  const auto source = static_cast<std::uint8_t>(first & ~kIpv6);
+  const std::size_t types = is_v6 ? kTypesOffset + kIpv6Bytes : kTypesOffset;
+  const std::size_t end = key.size() > types ? key.find('\0', types) : key.npos;
+  if (end == key.npos) return {};
   if (source > static_cast<std::uint8_t>(CommandSource::midi)) return {};
   Header header;
   header.origin.source = static_cast<CommandSource>(source);
-  header.origin.ip = static_cast<std::uint32_t>(in.fixed_int(4));
+  if (is_v6) {
+    const std::uint64_t high = in.fixed_int(8);
+    const std::uint64_t low = in.fixed_int(8);
+    header.origin.ip = system::IpAddress(high, low, static_cast<std::uint32_t>(in.fixed_int(4)));
+  } else {
+    header.origin.ip = static_cast<std::uint32_t>(in.fixed_int(4));
+  }
   header.origin.port = static_cast<std::uint16_t>(in.fixed_int(2));
-  header.types = key.substr(kTypesOffset, end - kTypesOffset);
+  header.types = key.substr(types, end - types);
   header.address = key.substr(end + 1);
   return header;
 }

@@ -37,37 +37,40 @@ class AmplificationLimit {
   AmplificationLimit(std::vector<Cidr> allow, ListSubnets list_subnets, std::array<std::uint64_t, 2> secret);
 
   /// True if the address is not limited, regardless of tokens.
-  bool trusted(std::uint32_t ip, std::int64_t now);
+  bool trusted(const IpAddress& ip, std::int64_t now);
+  /// True if the address is trusted or has returned its token.
+  bool is_unlimited(const IpAddress& ip, std::int64_t now);
   /// Credits the address for a datagram of `bytes` bytes received from it.
-  void add_credit(std::uint32_t ip, std::size_t bytes, std::int64_t now);
+  void add_credit(const IpAddress& ip, std::size_t bytes, std::int64_t now);
   /// Charges `bytes` to the address. Returns false if they must not be sent.
-  bool try_consume(std::uint32_t ip, std::size_t bytes, std::int64_t now);
+  bool try_consume(const IpAddress& ip, std::size_t bytes, std::int64_t now);
   /// As try_consume(); warns about withheld datagrams.
   bool try_send(const Endpoint& to, std::size_t bytes, std::int64_t now);
 
   /// Returns a token to send to the address now, if a datagram was withheld or the sender is subscribing.
-  std::optional<std::string> make_challenge(std::uint32_t ip, bool is_subscribing, std::int64_t now);
+  std::optional<std::string> make_challenge(const IpAddress& ip, bool is_subscribing, std::int64_t now);
   /// Verifies a returned token and lifts the limit. Returns false if the token is wrong or too old.
-  bool verify_token(std::uint32_t ip, std::string_view token, std::int64_t now);
+  bool verify_token(const IpAddress& ip, std::string_view token, std::int64_t now);
 
   /// Number of datagrams withheld so far.
   std::uint64_t withheld() const { return withheld_; }
 
  private:
   struct Source {
-    std::uint32_t ip = 0;
+    IpAddress ip;
     std::int64_t credit = 0;
     std::int64_t token_at = 0;
     bool withheld = false;
   };
   struct Verified {
-    std::uint32_t ip = 0;
+    IpAddress ip;
     std::int64_t until = 0;
   };
-  Source& source(std::uint32_t ip);
-  Verified& verified(std::uint32_t ip) { return verified_[slot(ip)]; }
-  std::size_t slot(std::uint32_t ip) const;
-  std::string token_of(std::uint32_t ip, std::int64_t epoch) const;
+  Source& source(const IpAddress& ip);
+  Verified& verified(const IpAddress& ip) { return verified_[slot(ip)]; }
+  std::size_t slot(const IpAddress& ip) const;
+  std::uint64_t word_of(const IpAddress& ip) const;
+  std::string token_of(const IpAddress& ip, std::int64_t epoch) const;
 
   std::vector<Cidr> allow_;
   ListSubnets list_subnets_;

@@ -7,7 +7,11 @@ namespace limber::osc {
 
 using system::Endpoint;
 using system::endpoint_text;
-using system::parse_ipv4;
+using system::host_port_text;
+using system::ip_text;
+using system::IpAddress;
+using system::IpVersion;
+using system::parse_ip;
 using system::resolve;
 
 }  // namespace limber::osc

@@ -16,12 +16,13 @@ namespace limber::osc {
 
 namespace {
 
-constexpr std::uint32_t kThisMachine = 0x7f000001;
+constexpr IpAddress kThisMachine(0x7f000001U);
+constexpr IpAddress kThisMachine6(0, 1);
 constexpr std::int64_t kLookUpRetryInterval = 5'000'000'000;  // ns between two look-ups of an unknown name
 
-std::optional<Endpoint> parse_literal(const std::string& host, std::uint16_t port) {
-  if (const std::optional<std::uint32_t> ip = parse_ipv4(host)) return Endpoint{*ip, port};
-  if (host == "localhost") return Endpoint{kThisMachine, port};
+std::optional<Endpoint> parse_literal(const std::string& host, std::uint16_t port, IpVersion preferred) {
+  if (const std::optional<IpAddress> ip = parse_ip(host)) return Endpoint{*ip, port};
+  if (host == "localhost") return Endpoint{preferred == IpVersion::v6 ? kThisMachine6 : kThisMachine, port};
   return std::nullopt;
 }
 
@@ -41,7 +42,7 @@ HostResolver::HostResolver(ResolveFunction look_up, std::function<void()> notify
 }
 
 std::optional<Result<Endpoint>> HostResolver::find(const std::string& host, std::uint16_t port) {
-  if (const std::optional<Endpoint> at = parse_literal(host, port)) return *at;
+  if (const std::optional<Endpoint> at = parse_literal(host, port, preferred_)) return *at;
   {
     const std::scoped_lock lock(shared_->mutex);
     const auto [entry, inserted] = shared_->results.try_emplace(host);
@@ -50,8 +51,8 @@ std::optional<Result<Endpoint>> HostResolver::find(const std::string& host, std:
       return Endpoint{(*entry->second)->ip, port};
     }
   }
-  const auto run_look_up = [host, port, look_up = look_up_, shared = shared_] {
-    Result<Endpoint> at = look_up(host, port);
+  const auto run_look_up = [host, port, preferred = preferred_, look_up = look_up_, shared = shared_] {
+    Result<Endpoint> at = look_up(host, port, preferred);
     {
       const std::scoped_lock lock(shared->mutex);
       shared->results[host] = std::move(at);
@@ -93,7 +94,8 @@ void HostResolver::invalidate_failed() {
   std::erase_if(shared_->results, [](const auto& entry) { return entry.second && !entry.second->ok(); });
 }
 
-void TargetResolver::begin_config() {
+void TargetResolver::begin_config(IpVersion preferred) {
+  host_names_.prefer(preferred);
   reported_errors_.clear();
   host_names_.invalidate();
 }
@@ -118,8 +120,8 @@ std::vector<std::string> TargetResolver::resolve(const std::vector<StreamTarget>
     }
     retry_at_ = now + kLookUpRetryInterval;
     std::string error =
-        fmt::format("OSC out {}:{}: {}; retried every 5 s. Correct the name in the scene or with --osc-out HOST:PORT",
-                    printable(config.host), config.port, endpoint->error());
+        fmt::format("OSC out {}: {}; retried every 5 s. Correct the name in the scene or with --osc-out HOST:PORT",
+                    host_port_text(printable(config.host), config.port), endpoint->error());
     if (std::ranges::find(reported_errors_, error) != reported_errors_.end()) continue;
     reported_errors_.push_back(error);
     errors.push_back(std::move(error));

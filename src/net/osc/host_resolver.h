@@ -19,7 +19,8 @@
 namespace limber::osc {
 
 /// Resolves a host and a port to an address: resolve(), or a replacement in tests.
-using ResolveFunction = std::function<Result<Endpoint>(const std::string& host, std::uint16_t port)>;
+using ResolveFunction =
+    std::function<Result<Endpoint>(const std::string& host, std::uint16_t port, IpVersion preferred)>;
 
 /// Asynchronous host name look-ups with a cache. [net]; each look-up runs on its own detached thread.
 class HostResolver {
@@ -35,6 +36,8 @@ class HostResolver {
                                            std::chrono::milliseconds limit);
   /// True if a look-up has ended since the last call.
   bool consume_changed();
+  /// Sets the kind of address of names that have both. Call invalidate() next.
+  void prefer(IpVersion version) { preferred_ = version; }
   /// Discards all finished look-ups, so that names are resolved again: a machine may have moved.
   void invalidate();
   /// Discards failed look-ups, so that these names are resolved again.
@@ -43,6 +46,7 @@ class HostResolver {
  private:
   struct Shared;
   ResolveFunction look_up_;
+  IpVersion preferred_ = IpVersion::v4;
   std::shared_ptr<Shared> shared_;
 };
 
@@ -53,8 +57,9 @@ class TargetResolver {
   TargetResolver(ResolveFunction look_up, std::function<void()> notify)
       : host_names_(std::move(look_up), std::move(notify)) {}
 
-  /// Before the first resolve() of a configuration: resolves all names again.
-  void begin_config();
+  /// Before the first resolve() of a configuration: resolves all names again. `preferred`: for names with addresses of
+  /// both kinds.
+  void begin_config(IpVersion preferred);
   /// Sets the targets that have a resolved address and are not an own input of the sender. Waits for each look-up up to
   /// `wait`. Returns the errors, each once per configuration. `now` in ns.
   std::vector<std::string> resolve(const std::vector<StreamTarget>& configured, Sender& sender, std::int64_t now,

@@ -126,16 +126,24 @@ Network::Network(engine::EngineLink& link, OscOptions options, const engine::Tra
   sender_.set_tcp(tcp_);
   streams_.set_tcp(tcp_);
   link_.wake_network = [wake = wake_] { wake->notify(); };
+  link_.on_osc_request = [this](const Message& message, const CommandOrigin& origin) {
+    Result<void> accepted = config_.edits.push(message, origin);
+    wake_->notify();
+    return accepted;
+  };
 }
 
-Network::~Network() { stop(); }
+Network::~Network() {
+  stop();
+  link_.on_osc_request = nullptr;
+}
 
 Result<void> Network::start() {
   if (thread_.joinable()) return {};
-  last_config_ = link_.osc_config.read();
+  config_.scene = link_.osc_config.read();
   std::vector<std::string> errors;
   if (const Result<void> opened = sender_.open(); !opened) errors.push_back(opened.error());
-  std::ranges::move(apply(effective_config(options_, last_config_.get())), std::back_inserter(errors));
+  std::ranges::move(apply(effective_config(options_, config_.scene.get())), std::back_inserter(errors));
   std::ranges::move(tcp_.listen(options_.tcp), std::back_inserter(errors));
   // a machine that has just booted may not resolve names yet
   for (const std::string& error : resolve_targets(kStartLookUpTimeout)) log_warning("{}", error);
@@ -159,7 +167,7 @@ void Network::stop() {
   receiver_.close();
   tcp_.close();
   sender_.close();
-  config_ = {};
+  config_.current = {};
   streams_.set_targets({});
   status_.clear();
 }
@@ -209,25 +217,28 @@ void Network::wait_for_events() {
 // next.
 std::vector<std::string> Network::apply(const OscConfig& config) {
   std::vector<std::string> errors = receiver_.listen(config.listen);
-  config_ = config;
+  config_.current = config;
   update_own_endpoints();
-  targets_.begin_config();
+  targets_.begin_config(is_ipv6_only(config_.current) ? IpVersion::v6 : IpVersion::v4);
   return errors;
 }
 
 // Returns the errors, each once per configuration.
 std::vector<std::string> Network::resolve_targets(std::chrono::milliseconds wait) {
-  std::vector<std::string> errors = targets_.resolve(config_.targets, sender_, clock_.steady(), wait);
+  std::vector<std::string> errors = targets_.resolve(config_.current.targets, sender_, clock_.steady(), wait);
   update_streams();
   update_status_lines();
   return errors;
 }
 
-void Network::update_status_lines() { status_.set(receiver_.bound(), tcp_.bound(), targets_.targets()); }
+void Network::update_status_lines() {
+  status_.set(receiver_.bound(), tcp_.bound(), targets_.targets());
+  link_.osc.set_targets(targets_text(config_.current.targets));
+}
 
 TcpCallbacks Network::tcp_callbacks() {
   const auto origin = [](const Endpoint& peer) { return CommandOrigin{CommandSource::osc, peer.ip, peer.port}; };
-  return {.is_allowed = [this](std::uint32_t ip) { return is_allowed(options_.allow, ip); },
+  return {.is_allowed = [this](const IpAddress& ip) { return is_allowed(options_.allow, ip); },
           .receive =
               [this, origin](const Endpoint& from, std::string_view packet) {
                 const Receiver::ScanResult scanned = receiver_.scan(packet.data(), packet.size(), origin(from));
@@ -243,10 +254,15 @@ TcpCallbacks Network::tcp_callbacks() {
 void Network::apply_new_config() {
   const bool resolved = targets_.consume_changed();
   std::shared_ptr<const OscConfig> scene_config = link_.osc_config.read();
-  const bool received = scene_config != last_config_;
-  last_config_ = std::move(scene_config);
-  const OscConfig config = received ? effective_config(options_, last_config_.get()) : config_;
-  const bool changed = config != config_;
+  const bool received = scene_config != config_.scene;
+  config_.scene = std::move(scene_config);
+  const bool edited = process_target_requests();
+  OscConfig config = config_.current;
+  if (received || edited) {
+    config = effective_config(options_, config_.scene.get());
+    config.targets = edited_targets();
+  }
+  const bool changed = config != config_.current;
   if (!changed && !resolved) return;
   const std::vector<std::string> before = status_lines();
   std::vector<std::string> errors;
@@ -257,13 +273,49 @@ void Network::apply_new_config() {
   for (const std::string& line : status_lines()) log_info("{}", line);
 }
 
+// Returns true if targets may have changed.
+bool Network::process_target_requests() {
+  bool edited = false;
+  for (const TargetEdits::Request& request : config_.edits.drain()) {
+    if (same_address(request.message.address, "/list/targets")) {
+      Message answer{"/list/targets", {}};
+      for (const StreamTarget& target : edited_targets())
+        answer.args.push_back(Arg::of(std::string_view(target_text(target))));
+      if (answer.args.empty()) answer.args.push_back(Arg::of(""));  // an answer must not look like a query
+      link_.push_out({engine::Outgoing::Destination::reply, request.origin, std::move(answer)});
+      continue;
+    }
+    const Result<void> done = handle_target_request(request);
+    edited = edited || done.ok();
+    if (done) continue;
+    link_.counters.refused.fetch_add(1, std::memory_order_relaxed);
+    log_warning("OSC {} from {}: {}", request.message.address, sender_text(request.origin), done.error());
+    link_.push_out({engine::Outgoing::Destination::error, request.origin,
+                    engine::error_message(request.message.address, done.error())});
+  }
+  return edited;
+}
+
+// A forged sender must not direct streams to a machine that has not asked for them.
+Result<void> Network::handle_target_request(const TargetEdits::Request& request) {
+  const CommandOrigin& origin = request.origin;
+  if (origin.source == CommandSource::osc && !origin.ip.is_any() && !tcp_.is_connected({origin.ip, origin.port}) &&
+      !amplification_.is_unlimited(origin.ip, clock_.steady()))
+    return Error{"a sender in another network must return its /token first, or be in --osc-allow"};
+  return config_.edits.execute(request.message, edited_targets());
+}
+
+std::vector<StreamTarget> Network::edited_targets() const {
+  return config_.edits.applied_to(effective_config(options_, config_.scene.get()).targets);
+}
+
 // Repeats failed look-ups. Their errors were already logged.
 void Network::retry_look_ups() {
   if (targets_.consume_retry(clock_.steady())) (void)resolve_targets();
 }
 
 void Network::retry_listen() {
-  if (!receiver_.retry_listen(config_.listen)) return;
+  if (!receiver_.retry_listen(config_.current.listen)) return;
   update_own_endpoints();
   update_status_lines();
   for (const std::string& line : status_lines()) log_info("{}", line);
@@ -307,8 +359,11 @@ void Network::pong(const CommandOrigin& to) {
 }
 
 void Network::update_own_endpoints() {
-  std::vector<std::uint32_t> addresses;
-  for (const system::Subnet& subnet : system::connected_subnets()) addresses.push_back(subnet.ip);
+  std::vector<IpAddress> addresses = {0xffffffffU};  // broadcasts return to this machine
+  for (const system::Subnet& subnet : system::connected_subnets()) {
+    addresses.push_back(subnet.ip);
+    addresses.push_back(subnet.broadcast());
+  }
   sender_.set_own_inputs(receiver_.bound(), std::move(addresses));
 }
 

@@ -23,8 +23,9 @@
 #include "net/osc/sender.h"
 #include "net/osc/streams.h"
 #include "net/osc/subscribers.h"
+#include "net/osc/targets/target_edits.h"
+#include "net/osc/targets/unreachable_targets.h"
 #include "net/osc/tcp/tcp_peers.h"
-#include "net/osc/unreachable_targets.h"
 
 namespace limber::osc {
 
@@ -116,6 +117,9 @@ class Network {
   void update_status_lines();
   TcpCallbacks tcp_callbacks();
   void apply_new_config();
+  bool process_target_requests();
+  std::vector<StreamTarget> edited_targets() const;
+  Result<void> handle_target_request(const TargetEdits::Request& request);
   void retry_listen();
   void retry_look_ups();
   void update_subscribers();
@@ -143,8 +147,11 @@ class Network {
   Subscribers subscribers_;
   PacketQueue packets_;
   Outbox outbox_;
-  std::shared_ptr<const OscConfig> last_config_;
-  OscConfig config_;
+  struct {
+    std::shared_ptr<const OscConfig> scene;
+    OscConfig current;
+    TargetEdits edits;
+  } config_;
   AmplificationLimit amplification_;
   NetworkStatus status_;
   std::jthread thread_;

@@ -15,9 +15,8 @@ namespace limber::osc {
 
 namespace {
 
-constexpr const char* kOutUsage =
-    "write --osc-out HOST:PORT[,rate=60,bundle=1472,streams=pos+rot,bodies=arm*,errors=on], or off";
-constexpr const char* kAllowUsage = "write --osc-allow 192.168.1.0/24, or several separated by commas";
+constexpr const char* kOutForm = "HOST:PORT[,rate=60,bundle=1472,streams=pos+rot,bodies=arm*,errors=on]";
+constexpr const char* kAllowUsage = "write --osc-allow 192.168.1.0/24 or fd00::/8, or several separated by commas";
 
 std::optional<std::uint16_t> parse_port(std::string_view text) {
   if (text.empty() || text.size() > 5) return std::nullopt;
@@ -99,25 +98,31 @@ std::vector<std::string_view> split_options(std::string_view text) {
   return pieces;
 }
 
-// Returns the reason why listening at this address is not supported, or null.
-const char* unsupported_reason(std::string_view option, std::string_view address) {
-  if (address.find(':') != std::string_view::npos || address.starts_with('[')) {
-    return "IPv6 is not supported; write an IPv4 address, such as 127.0.0.1:9003 or 0.0.0.0:9003";
-  }
-  const std::optional<std::uint16_t> first = parse_port(address.substr(0, address.find('.')));
-  if (first && *first >= 224 && *first <= 239 && option != "--osc-in")
+// Returns the reason why this address can't be used, or an empty text.
+std::string address_fault(std::string_view option, const system::HostPort& address) {
+  if (address.bracketed && !system::is_ip_address(address.host)) return "there must be an IPv6 address in brackets";
+  if (!address.bracketed && address.host.find(':') != std::string_view::npos)
+    return "an IPv6 address is written in brackets, such as [::1]:9003";
+  if (std::string fault = system::missing_zone(address.host); !fault.empty()) return fault;
+  const std::optional<IpAddress> ip = parse_ip(address.host.substr(0, address.host.find('%')));
+  if (ip && ip->is_multicast() && option != "--osc-in" && option != "--osc-out")
     return "a multicast group is for --osc-in only; write the address of this machine, or 0.0.0.0";
-  return nullptr;
+  return {};
 }
 
 }  // namespace
 
-bool Cidr::contains(std::uint32_t address) const {
-  const std::uint32_t mask = bits == 0 ? 0 : ~std::uint32_t{0} << (32 - bits);
-  return (address & mask) == (ip & mask);
+bool Cidr::contains(const IpAddress& address) const {
+  if (address.is_v6 != ip.is_v6 || (ip.zone != 0 && address.zone != ip.zone)) return false;
+  const auto mask = [](int count) {
+    return count <= 0 ? std::uint64_t{0} : ~std::uint64_t{0} << (64 - std::min(count, 64));
+  };
+  const std::uint64_t high = ip.is_v6 ? mask(bits) : 0;
+  const std::uint64_t low = ip.is_v6 ? mask(bits - 64) : mask(bits + 32);
+  return ((address.high ^ ip.high) & high) == 0 && ((address.low ^ ip.low) & low) == 0;
 }
 
-bool is_allowed(const std::vector<Cidr>& list, std::uint32_t address) {
+bool is_allowed(const std::vector<Cidr>& list, const IpAddress& address) {
   return list.empty() || std::ranges::any_of(list, [&](const Cidr& c) { return c.contains(address); });
 }
 
@@ -128,56 +133,78 @@ Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::st
   if (text == "off") return addresses;
   for (const std::string_view piece : split(text, ',')) {
     ListenAddress address;
-    const std::size_t colon = piece.rfind(':');
-    const std::string_view port_text = colon == std::string_view::npos ? piece : piece.substr(colon + 1);
-    if (colon != std::string_view::npos) address.address = piece.substr(0, colon);
-    if (const char* const reason = unsupported_reason(option, address.address)) {
-      return Error{fmt::format("{} '{}': {}", option, printable(text), reason)};
-    }
-    const std::optional<std::uint16_t> port = parse_port(port_text);
-    if (!port || address.address.empty()) {
+    const system::HostPort parts = system::split_host_port(piece);
+    const std::string fault = address_fault(option, parts);
+    if (!fault.empty()) return Error{fmt::format("{} '{}': {}", option, printable(text), fault)};
+    const std::optional<std::uint16_t> port = parse_port(parts.port);
+    if (!port || (parts.host.empty() && parts.port.size() != piece.size())) {
       return Error{
           fmt::format("{0} '{1}': no port in '{2}'; write {0} [ADDR:]PORT, such as 9003 or 0.0.0.0:9003, or off",
                       option, printable(text), printable(piece))};
     }
+    if (!parts.host.empty()) address.address = parts.host;
     address.port = *port;
     addresses.push_back(address);
   }
   return addresses;
 }
 
-Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text) {
-  if (text == "off") return std::vector<StreamTarget>{};
+namespace {
+
+// Error texts have no prefix.
+Result<StreamTarget> parse_target_text(std::string_view text, const std::vector<StreamTarget>& known) {
   const std::vector<std::string_view> pieces = split_options(text);
   StreamTarget target;
-  const std::size_t colon = pieces[0].rfind(':');
-  const std::optional<std::uint16_t> port =
-      colon == std::string_view::npos ? std::nullopt : parse_port(pieces[0].substr(colon + 1));
-  if (!port || *port == 0 || colon == 0) {
-    return Error{
-        fmt::format("--osc-out '{}': '{}' is not HOST:PORT; {}", printable(text), printable(pieces[0]), kOutUsage)};
+  const system::HostPort address = system::split_host_port(pieces[0]);
+  if (const std::string fault = address_fault("--osc-out", address); !fault.empty()) return Error{fault};
+  const std::optional<std::uint16_t> port = parse_port(address.port);
+  if (!port || *port == 0 || address.host.empty()) {
+    return Error{fmt::format("'{}' is not HOST:PORT", printable(pieces[0]))};
   }
-  target.host = pieces[0].substr(0, colon);
+  target.host = address.host;
   target.port = *port;
+  const auto same = std::ranges::find_if(
+      known, [&](const StreamTarget& each) { return each.host == target.host && each.port == target.port; });
+  if (same != known.end()) target = *same;
   for (std::size_t i = 1; i < pieces.size(); i++) {
     const std::size_t equals = pieces[i].find('=');
     const std::string_view value = equals == std::string_view::npos ? "" : pieces[i].substr(equals + 1);
     if (const std::optional<std::string> error = set_option(target, pieces[i].substr(0, equals), value)) {
-      return Error{fmt::format("--osc-out '{}': {}; {}", printable(text), *error, kOutUsage)};
+      return Error{*error};
     }
   }
-  return std::vector<StreamTarget>{target};
+  return target;
+}
+
+}  // namespace
+
+Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text) {
+  if (text == "off") return std::vector<StreamTarget>{};
+  Result<StreamTarget> target = parse_target_text(text, {});
+  if (!target)
+    return Error{
+        fmt::format("--osc-out '{}': {}; write --osc-out {}, or off", printable(text), target.error(), kOutForm)};
+  return std::vector<StreamTarget>{std::move(*target)};
+}
+
+Result<StreamTarget> parse_target(std::string_view text, const std::vector<StreamTarget>& known) {
+  Result<StreamTarget> target = parse_target_text(text, known);
+  if (!target) return Error{fmt::format("'{}': {}; write {}", printable(text), target.error(), kOutForm)};
+  return target;
 }
 
 Result<std::vector<Cidr>> parse_osc_allow(std::string_view text) {
   std::vector<Cidr> list;
   for (const std::string_view piece : split(text, ',')) {
     const std::size_t slash = piece.find('/');
-    const std::optional<std::uint16_t> bits =
-        slash == std::string_view::npos ? std::uint16_t{32} : parse_port(piece.substr(slash + 1));
     // numeric addresses only: a host name may resolve differently later
-    const std::optional<std::uint32_t> ip = parse_ipv4(std::string(piece.substr(0, slash)));
-    if (!ip || !bits || *bits > 32) {
+    std::string_view address = piece.substr(0, slash);
+    if (address.starts_with('[') && address.ends_with(']')) address = address.substr(1, address.size() - 2);
+    const std::optional<IpAddress> ip = parse_ip(address);
+    const int max_bits = ip && ip->is_v6 ? 128 : 32;
+    const std::optional<std::uint16_t> bits =
+        slash == std::string_view::npos ? static_cast<std::uint16_t>(max_bits) : parse_port(piece.substr(slash + 1));
+    if (!ip || !bits || *bits > max_bits) {
       return Error{fmt::format("--osc-allow '{}': '{}' is not an address range; {}", printable(text), printable(piece),
                                kAllowUsage)};
     }
@@ -200,11 +227,18 @@ OscConfig effective_config(const OscOptions& options, const OscConfig* scene) {
       if (std::ranges::find(config.listen, address) == config.listen.end()) config.listen.push_back(address);
     }
   }
+  for (ListenAddress& address : config.listen) address.shared = options.shared;
   return config;
 }
 
+bool is_ipv6_only(const OscConfig& config) {
+  return !config.listen.empty() && std::ranges::all_of(config.listen, [](const ListenAddress& address) {
+    return address.address.find(':') != std::string::npos;
+  });
+}
+
 std::string target_text(const StreamTarget& target) {
-  std::string text = fmt::format("{}:{}", target.host, target.port);
+  std::string text = host_port_text(target.host, target.port);
   std::string streams;
   for (const auto& [on, name] : {std::pair(target.pos, "pos"), std::pair(target.rot, "rot"),
                                  std::pair(target.relrot, "relrot"), std::pair(target.relpos, "relpos")}) {

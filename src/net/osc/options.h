@@ -10,19 +10,21 @@
 
 #include "base/result.h"
 #include "engine/commands/command.h"
+#include "net/osc/endpoint.h"
 
 namespace limber::osc {
 
-/// A range of IPv4 addresses.
+/// A range of addresses.
 struct Cidr {
-  std::uint32_t ip = 0;
-  int bits = 32;  ///< Number of leading bits that count, 0 .. 32.
+  IpAddress ip = {};
+  int bits = 32;  ///< Number of leading bits that count, 0 .. 32, or 128 for IPv6.
 
-  bool contains(std::uint32_t address) const;
+  /// A link-local address must also have the same zone, unless this one has none.
+  bool contains(const IpAddress& address) const;
 };
 
 /// True if one of the ranges contains the address, or if the list is empty. [any]
-bool is_allowed(const std::vector<Cidr>& list, std::uint32_t address);
+bool is_allowed(const std::vector<Cidr>& list, const IpAddress& address);
 
 /// The OSC options of the command line. `in` and `out`: nullopt if the option is not given; an empty list means off.
 struct OscOptions {
@@ -33,9 +35,11 @@ struct OscOptions {
   /// Returns the directly connected subnets; senders in them are not limited. Empty: asks the system.
   std::function<std::vector<Cidr>()> connected = {};
   std::vector<ListenAddress> tcp = {};  ///< `--osc-tcp`; empty: none.
+  bool shared = false;                  ///< `--osc-share`: other programs may open the UDP ports, too.
 };
 
-/// Parses `[ADDR:]PORT` or `off`; several addresses are separated by commas. Port 0 lets the system choose. [any]
+/// Parses `[ADDR:]PORT` (IPv6: `[ADDR]:PORT`) or `off`; several addresses are separated by commas. Port 0 lets the
+/// system choose. [any]
 Result<std::vector<ListenAddress>> parse_osc_in(std::string_view text);
 /// As parse_osc_in() for another option with listen addresses: `--query [ADDR:]PORT|off`. [any]
 Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::string_view text);
@@ -45,11 +49,18 @@ Result<std::vector<ListenAddress>> parse_listen(std::string_view option, std::st
 /// `off`, which gives an empty list. Call it once per `--osc-out` option. [any]
 Result<std::vector<StreamTarget>> parse_osc_out(std::string_view text);
 
-/// Parses `CIDR,…`, such as `192.168.1.0/24` or a single address. [any]
+/// Parses the same text, except `off`. Settings that it does not name are those of the target in `known` with this host
+/// and port, or the defaults. [any]
+Result<StreamTarget> parse_target(std::string_view text, const std::vector<StreamTarget>& known);
+
+/// Parses `CIDR,…`, such as `192.168.1.0/24`, `fd00::/8` or a single address. [any]
 Result<std::vector<Cidr>> parse_osc_allow(std::string_view text);
 
 /// The configuration with the two default ports, which are those of ofxDabPhysics.
 OscConfig default_osc_config();
+
+/// True if there are listen addresses and all are of IPv6, so that names of targets prefer it. [any]
+bool is_ipv6_only(const OscConfig& config);
 
 /// Returns the listen addresses and targets, each from the first source that sets them: command line, scene, default.
 /// The scene's inputs of motion capture are added to the former, unless these are off. [any]

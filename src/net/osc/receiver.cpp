@@ -28,13 +28,16 @@ constexpr const char* kListenHint =
     "Choose another port with --osc-in ADDR:PORT, or continue without it with --osc-optional";
 constexpr const char* kTrackerHint = "Motion capture from there is missing; it is tried again each second";
 
-std::vector<std::uint32_t> own_addresses() {
-  std::vector<std::uint32_t> list;
+std::vector<IpAddress> own_addresses() {
+  std::vector<IpAddress> list;
   for (const system::Subnet& subnet : system::connected_subnets()) list.push_back(subnet.ip);
   return list;
 }
 
-std::size_t slot_of(const Endpoint& e) { return (e.ip * 2654435761u ^ e.port * 40503u) >> 7; }
+std::size_t slot_of(const Endpoint& e) {
+  const std::uint64_t ip = e.ip.low ^ e.ip.high * 0x9e3779b97f4a7c15U;
+  return static_cast<std::size_t>((ip * 2654435761U ^ e.port * 40503U) >> 7U);
+}
 
 }  // namespace
 
@@ -97,19 +100,21 @@ std::optional<std::int64_t> Receiver::timeout() const {
 // True if an address is not open and opening it can be retried. Not if an address is a host name, because a look-up may
 // block for seconds.
 bool Receiver::can_retry(const std::vector<ListenAddress>& addresses) const {
-  const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return parse_ipv4(a.address).has_value(); });
+  const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return system::is_ip_address(a.address); });
   return numbers && std::ranges::any_of(addresses, [this](const ListenAddress& address) {
            return std::ranges::none_of(sockets_, [&](const auto& s) { return s->address == address; });
          });
 }
 
 std::optional<std::string> Receiver::open(const ListenAddress& address) {
-  const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
+  const std::string name = host_port_text(printable(address.address), address.port);
   const Result<Endpoint> at = resolve(address.address, address.port);
   const char* const hint = address.optional ? kTrackerHint : kListenHint;
   if (!at) return fmt::format("OSC can't listen on {}: {}. {}", name, at.error(), hint);
   Result<system::UdpSocket> socket =
-      system::is_multicast(at->ip) ? system::open_multicast(*at, own_addresses()) : system::open_udp(*at);
+      at->ip.is_multicast()
+          ? system::open_multicast(*at, own_addresses())
+          : system::open_udp(*at, address.shared ? system::PortSharing::shared : system::PortSharing::exclusive);
   if (!socket) return fmt::format("OSC can't listen on {}: {}. {}", name, socket.error(), hint);
 
   system::count_dropped(socket->fd());
@@ -121,7 +126,7 @@ std::optional<std::string> Receiver::open(const ListenAddress& address) {
         "Increase it with sysctl -w net.core.rmem_max={}",
         granted / 1024, kReceiveBuffer / 1024, kReceiveBuffer);
   }
-  if (at->ip == 0 || system::is_multicast(at->ip)) {
+  if (at->ip.is_any() || at->ip.is_multicast()) {
     log_warning("OSC in {}: open to the network{}", name,
                 allow_.empty() ? ", every sender is accepted. Restrict it with --osc-allow CIDR"
                                : ", senders in --osc-allow are accepted");
@@ -385,6 +390,6 @@ int Receiver::socket_of(const Endpoint& sender) const {
   return ours ? known.fd : -1;
 }
 
-bool Receiver::allowed(std::uint32_t ip) const { return is_allowed(allow_, ip); }
+bool Receiver::allowed(const IpAddress& ip) const { return is_allowed(allow_, ip); }
 
 }  // namespace limber::osc

@@ -115,7 +115,7 @@ class Receiver {
   void push(engine::Command command, bool urgent_pushed = false);
   void reject(const CommandOrigin& origin, const std::string& address, const std::string& text);
   void record_kernel_drops(ListenSocket& socket, std::uint32_t count);
-  bool allowed(std::uint32_t ip) const;
+  bool allowed(const IpAddress& ip) const;
   template <class Text>
   void warn_throttled(WarningThrottle& throttle, const Text& text);
 

@@ -100,7 +100,7 @@ void Sender::pong(const CommandOrigin& to, std::uint64_t tick, double time) {
 
 void Sender::send_to_origin(const CommandOrigin& origin, std::span<const char> packet, bool is_answer) {
   // a message from the panel or the command line has no return address; WebSocket answers take another path
-  if (origin.ip == 0 || origin.port == 0 || origin.source == CommandSource::oscquery) return;
+  if (origin.ip.is_any() || origin.port == 0 || origin.source == CommandSource::oscquery) return;
   const Endpoint to{origin.ip, origin.port};
   if (!is_answer) return send_to(to, packet);
   if (may_answer_(to, packet.size(), 1)) reply(to, packet);
@@ -121,18 +121,17 @@ bool Sender::send_by_tcp(const Endpoint& to, std::span<const char> packet) {
   return true;
 }
 
-void Sender::set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses) {
+void Sender::set_own_inputs(std::vector<Endpoint> inputs, std::vector<IpAddress> addresses) {
   inputs_ = std::move(inputs);
   addresses_ = std::move(addresses);
 }
 
 bool Sender::is_own_input(const Endpoint& target) const {
-  constexpr std::uint32_t kLoopback = 127;
   return std::ranges::any_of(inputs_, [&](const Endpoint& input) {
-    if (input.port != target.port) return false;
+    if (input.port != target.port || input.ip.is_v6 != target.ip.is_v6) return false;
     const bool here =
-        target.ip == 0 || target.ip >> 24 == kLoopback || std::ranges::find(addresses_, target.ip) != addresses_.end();
-    return input.ip == target.ip || (here && (input.ip == 0 || target.ip == 0));
+        target.ip.is_any() || target.ip.is_loopback() || std::ranges::find(addresses_, target.ip) != addresses_.end();
+    return input.ip == target.ip || (here && (input.ip.is_any() || target.ip.is_any()));
   });
 }
 

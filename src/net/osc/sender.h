@@ -45,8 +45,9 @@ class Sender {
   }
   /// Sets the clients that receive by their connection instead of by UDP.
   void set_tcp(TcpPeers& tcp) { tcp_ = &tcp; }
-  /// Sets the endpoints this program listens on and this machine's addresses. Nothing is sent to its own inputs.
-  void set_own_inputs(std::vector<Endpoint> inputs, std::vector<std::uint32_t> addresses);
+  /// Sets the endpoints this program listens on and this machine's addresses, including those of
+  /// broadcasts. Nothing is sent to its own inputs.
+  void set_own_inputs(std::vector<Endpoint> inputs, std::vector<IpAddress> addresses);
   bool is_own_input(const Endpoint& target) const;
   /// Warns once that a target is the program's own input.
   void report_own_input(const Endpoint& target);
@@ -94,7 +95,7 @@ class Sender {
   SendGate may_answer_ = [](const Endpoint&, std::size_t, std::size_t) { return true; };
   SendGate may_serve_ = may_answer_;
   std::vector<Endpoint> inputs_;
-  std::vector<std::uint32_t> addresses_;
+  std::vector<IpAddress> addresses_;
   std::vector<Endpoint> reported_own_inputs_;
   std::uint64_t loops_ = 0;
   ErrorRateLimit error_limiter_;

@@ -38,7 +38,8 @@ std::optional<std::string> field(const http::request<http::empty_body>& request,
 
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
-  Connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context, std::uint32_t address, bool accepted)
+  Connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context, const system::IpAddress& address,
+             bool accepted)
       : context_(context), slot_(context, address, accepted), stream_(std::move(socket)) {}
   ~Connection() { context_.response_bytes -= response_bytes_; }
   Connection(const Connection&) = delete;
@@ -157,11 +158,26 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
 }  // namespace
 
+namespace {
+
+system::IpAddress address_of(const boost::asio::ip::address& address) {
+  if (address.is_v4()) return address.to_v4().to_uint();
+  system::IpAddress ip(0, 0, static_cast<std::uint32_t>(address.to_v6().scope_id()));
+  const boost::asio::ip::address_v6::bytes_type bytes = address.to_v6().to_bytes();
+  for (std::size_t i = 0; i < 8; i++) {
+    ip.high = ip.high << 8U | bytes[i];
+    ip.low = ip.low << 8U | bytes[8 + i];
+  }
+  return ip;
+}
+
+}  // namespace
+
 void serve_connection(boost::asio::ip::tcp::socket socket, ConnectionContext& context) {
   boost::system::error_code error;
   const auto peer = socket.remote_endpoint(error);
-  const bool known = !error && peer.address().is_v4();
-  const std::uint32_t address = known ? peer.address().to_v4().to_uint() : 0;
+  const bool known = !error;
+  const system::IpAddress address = known ? address_of(peer.address()) : system::IpAddress();
   const bool allowed = !known || context.is_allowed(address);
   const bool accepted = allowed && !context.full(address);
   if (!accepted && context.rejected >= kMaxRejected) return;

@@ -32,20 +32,20 @@ struct QueryContext;
 /// State shared by all connections of a server, and the server's side of them. [query]
 struct ConnectionContext {
   virtual ~ConnectionContext() = default;
-  /// True if this address (IPv4, host byte order; 0: unknown) may connect.
-  virtual bool is_allowed(std::uint32_t address) const = 0;
+  /// True if this address (0.0.0.0: unknown) may connect.
+  virtual bool is_allowed(const system::IpAddress& address) const = 0;
   /// Calls `respond` immediately or later.
   virtual void handle_request(HttpRequest request, QueryHub::Respond respond) = 0;
   /// Returns the context of WebSockets; null: requests to upgrade are answered like others.
   virtual QueryContext* web_sockets() { return nullptr; }
 
   int connections = 0;
-  std::map<std::uint32_t, int> connections_by_address = {};  ///< By IPv4 address; 0: unknown.
+  std::map<system::IpAddress, int> connections_by_address = {};  ///< 0.0.0.0: unknown.
   int rejected = 0;                ///< Number of rejected connections that are still receiving the reason.
   std::size_t response_bytes = 0;  ///< Bytes of responses being sent.
 
   /// True if a further connection from this address must be rejected.
-  bool full(std::uint32_t address) const {
+  bool full(const system::IpAddress& address) const {
     const auto used = connections_by_address.find(address);
     return connections >= QueryLimits::kConnections ||
            (used != connections_by_address.end() && used->second >= QueryLimits::kConnectionsPerAddress);
@@ -55,7 +55,7 @@ struct ConnectionContext {
 /// The connections of the query server.
 struct QueryContext : ConnectionContext {
   explicit QueryContext(QueryHub& hub_of_server) : hub(hub_of_server) {}
-  bool is_allowed(std::uint32_t address) const override { return hub.host().is_allowed(address); }
+  bool is_allowed(const system::IpAddress& address) const override { return hub.host().is_allowed(address); }
   void handle_request(HttpRequest request, QueryHub::Respond respond) override {
     hub.handle_request(std::move(request), std::move(respond));
   }
@@ -68,7 +68,7 @@ struct QueryContext : ConnectionContext {
 class ConnectionSlot {
  public:
   /// `accepted`: true for an accepted connection, false for a rejected one.
-  ConnectionSlot(ConnectionContext& context, std::uint32_t address, bool accepted)
+  ConnectionSlot(ConnectionContext& context, const system::IpAddress& address, bool accepted)
       : context_(&context), address_(address), accepted_(accepted) {
     (accepted ? context.connections : context.rejected)++;
     if (accepted) context.connections_by_address[address]++;
@@ -86,7 +86,7 @@ class ConnectionSlot {
 
  private:
   ConnectionContext* context_;
-  std::uint32_t address_;
+  system::IpAddress address_;
   bool accepted_;
 };
 

@@ -23,8 +23,8 @@ struct QueryHost {
   std::function<std::optional<std::uint16_t>()> osc_port = [] { return std::nullopt; };
   /// Additional host names by which browsers may address this machine. [query]
   std::vector<std::string> names;
-  /// True if this address (IPv4, host byte order) may connect. [query]
-  std::function<bool(std::uint32_t ip)> is_allowed = [](std::uint32_t) { return true; };
+  /// True if this address may connect. [query]
+  std::function<bool(const system::IpAddress& ip)> is_allowed = [](const system::IpAddress&) { return true; };
 };
 
 }  // namespace limber::oscquery

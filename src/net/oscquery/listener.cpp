@@ -5,6 +5,8 @@
 #include <exception>
 #include <utility>
 
+#include <boost/asio/ip/v6_only.hpp>
+
 #include "base/log/log.h"
 #include "base/system/thread.h"
 
@@ -18,6 +20,7 @@ error_code Listener::open(const tcp::endpoint& at) {
   error_code error;
   acceptor_.open(at.protocol(), error);
   if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);
+  if (!error && at.protocol() == tcp::v6()) acceptor_.set_option(net::ip::v6_only(true), error);
   if (!error) acceptor_.bind(at, error);
   if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
   return error;

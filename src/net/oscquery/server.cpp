@@ -48,9 +48,10 @@ struct QueryServer::Running {
 
   error_code open(const ListenAddress& at) {
     error_code error;
-    const auto found =
-        tcp::resolver(listener.io())
-            .resolve(tcp::v4(), at.address, std::to_string(at.port), tcp::resolver::numeric_service, error);
+    const bool ipv6 = at.address.find(':') != std::string::npos;
+    const auto found = tcp::resolver(listener.io())
+                           .resolve(ipv6 ? tcp::v6() : tcp::v4(), at.address, std::to_string(at.port),
+                                    tcp::resolver::numeric_service, error);
     if (error) return error;
     return listener.open(found.begin()->endpoint());
   }
@@ -102,12 +103,12 @@ Result<void> QueryServer::start(const ListenAddress& at) {
   running_ = std::make_unique<Running>(link_, host_, wake_);
   if (const error_code error = running_->open(at)) {
     running_.reset();
-    return Error{fmt::format("OSCQuery can't listen on {}:{} (TCP): {}. {}", printable(at.address), at.port,
-                             error.message(), kListenHint)};
+    return Error{fmt::format("OSCQuery can't listen on {} (TCP): {}. {}",
+                             system::host_port_text(printable(at.address), at.port), error.message(), kListenHint)};
   }
   if (running_->listener.local_endpoint().address().is_unspecified())
-    log_warning("OSCQuery {}:{}: open to the network, every client is accepted. Restrict it with --osc-allow CIDR",
-                at.address, port());
+    log_warning("OSCQuery {}: open to the network, every client is accepted. Restrict it with --osc-allow CIDR",
+                system::host_port_text(at.address, port()));
   running_->begin();
   return {};
 }

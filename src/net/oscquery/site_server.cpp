@@ -18,7 +18,7 @@ struct SiteServer::Running {
   struct Context : ConnectionContext {
     explicit Context(std::string site_folder) : folder(std::move(site_folder)) {}
     // every client is on this machine
-    bool is_allowed(std::uint32_t) const override { return true; }
+    bool is_allowed(const system::IpAddress&) const override { return true; }
     void handle_request(HttpRequest request, QueryHub::Respond respond) override {
       respond(respond_from_folder(request, folder));
     }

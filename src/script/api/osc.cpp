@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "base/osc_pattern.h"
+#include "base/system/net/socket.h"
 #include "base/text.h"
 #include "script/api/script_context.h"
 #include "script/vm/guard.h"
@@ -10,38 +11,34 @@ namespace limber::script::calls {
 
 namespace {
 
-// "127.0.0.1:9000" as IPv4 address in host byte order and port
 struct HostPort {
   std::string host;
-  std::uint32_t ip = 0;  // 0: the host is a name
+  std::optional<system::IpAddress> ip;  // nothing: the host is a name
   std::uint16_t port = 0;
 };
 
-std::optional<std::uint32_t> ip_of(std::string_view host) {
-  if (host == "localhost") return 0x7f000001u;
-  const auto bytes = split(host, '.');
-  if (bytes.size() != 4) return {};
-  std::uint32_t ip = 0;
-  for (const std::string_view byte : bytes) {
-    if (byte.empty() || byte.size() > 3 || byte.find_first_not_of("0123456789") != std::string_view::npos) return {};
-    const double value = parse_number(byte).value_or(256);
-    if (value > 255) return {};
-    ip = ip << 8u | static_cast<std::uint32_t>(value);
-  }
-  return ip;
-}
-
 Result<HostPort> host_port(std::string_view text) {
-  const std::size_t colon = text.rfind(':');
-  const std::string_view digits = colon == std::string_view::npos ? std::string_view() : text.substr(colon + 1);
-  const bool whole = !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
-  const double port = whole ? parse_number(digits).value_or(0) : 0;
-  if (port < 1 || port > 65535 || colon == 0 || printable(text) != text) {
+  const system::HostPort parts = system::split_host_port(text);
+  const bool whole = !parts.port.empty() && parts.port.find_first_not_of("0123456789") == std::string_view::npos;
+  const double port = whole ? parse_number(parts.port).value_or(0) : 0;
+  const bool is_v6 = parts.host.find(':') != std::string_view::npos;
+  const bool valid = !parts.host.empty() && is_v6 == parts.bracketed && printable(text) == text &&
+                     (!is_v6 || system::is_ip_address(parts.host));
+  if (port < 1 || port > 65535 || !valid) {
     return Error{
         fmt::format("'{}' is not an address; write \"host:port\", such as \"127.0.0.1:9000\"", printable(text))};
   }
-  const std::string_view host = text.substr(0, colon);
-  return HostPort{std::string(host), ip_of(host).value_or(0), static_cast<std::uint16_t>(port)};
+  if (const std::string fault = system::missing_zone(parts.host); !fault.empty()) return Error{fault};
+  HostPort result{std::string(parts.host), system::parse_ip(parts.host), static_cast<std::uint16_t>(port)};
+  if (parts.host == "localhost") result.ip = 0x7f000001U;
+  return result;
+}
+
+system::Endpoint endpoint_of(const LimberAddress& address) {
+  const bool is_v6 = address.is_v6 != 0;
+  const system::IpAddress ip = is_v6 ? system::IpAddress(address.high, address.low, address.zone)
+                                     : system::IpAddress(static_cast<std::uint32_t>(address.low));
+  return {ip, static_cast<std::uint16_t>(address.port)};
 }
 
 }  // namespace
@@ -67,30 +64,37 @@ void message_text(void* c, const char* text, std::int32_t length) {
   context_of(c).arguments.message.args.push_back(Arg::of(text_of(text, length)));
 }
 
-std::int32_t message_send(void* c, std::int32_t route, double ip, std::int32_t port) {
+std::int32_t message_send(void* c, std::int32_t route, const LimberAddress* to) {
   ScriptContext& context = context_of(c);
   if (route == 1 && !context.osc.handling_message) {
     return context.reject("osc:reply answers the message that is being handled: call it inside an osc:on function");
   }
   using Route = CallEffects::Route;
-  const CommandOrigin direct{CommandSource::osc, static_cast<std::uint32_t>(ip), static_cast<std::uint16_t>(port)};
-  const Route to = route == 0 ? Route::all : route == 1 ? Route::sender : Route::direct;
-  if (context.effects.send(to, route == 1 ? context.osc.sender : direct, std::move(context.arguments.message)))
+  const system::Endpoint end = to == nullptr ? system::Endpoint{} : endpoint_of(*to);
+  const CommandOrigin direct{CommandSource::osc, end.ip, end.port};
+  const Route way = route == 0 ? Route::all : route == 1 ? Route::sender : Route::direct;
+  if (context.effects.send(way, route == 1 ? context.osc.sender : direct, std::move(context.arguments.message)))
     return kOk;
   return context.reject(fmt::format("one call may send up to {} messages and 1 MB of text", CallEffects::kMaxMessages));
 }
 
-std::int32_t osc_address(void* c, const char* text, std::int32_t length) {
+std::int32_t osc_address(void* c, const char* text, std::int32_t length, LimberAddress* to) {
   ScriptContext& context = context_of(c);
   const Result<HostPort> parsed = host_port(text_of(text, length));
   if (!parsed) return context.reject(parsed.error());
-  if (parsed->ip == 0) {
+  if (!parsed->ip && system::is_ip_address(parsed->host))
+    return context.reject(fmt::format("'{}' names a network interface that does not exist", parsed->host));
+  if (!parsed->ip) {
     return context.reject(
         fmt::format("'{}' is a host name, which scripts can't resolve; write a numeric address", parsed->host));
   }
-  context.answer.number[0] = parsed->ip;
-  context.answer.number[1] = parsed->port;
+  const system::IpAddress& ip = *parsed->ip;
+  *to = {ip.high, ip.low, ip.zone, parsed->port, ip.is_v6 ? 1 : 0};
   return kOk;
+}
+
+std::int32_t address_text(void* c, const LimberAddress* address) {
+  return context_of(c).set_text(system::endpoint_text(endpoint_of(*address)));
 }
 
 void osc_handlers(void* c, std::int32_t count) { context_of(c).osc.handlers = count; }

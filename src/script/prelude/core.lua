@@ -33,7 +33,7 @@ ffi.cdef [[
   typedef struct timer { const int32_t number_, run_; } timer;
   typedef struct rng { const int32_t slot_, generation_; } rng;
   typedef struct policy { const int32_t number_; } policy;
-  typedef struct address { const double ip_; const int32_t port_; } address;
+  typedef struct address { const struct LimberAddress to_; } address;
 ]]
 
 local api = ffi.cast("const struct LimberApi*", P.api)

@@ -28,12 +28,12 @@ local function put(value, subject)
 end
 
 -- the message is complete before it is sent: an invalid value sends nothing
-local function send(subject, route, ip, port, address, ...)
+local function send(subject, route, to, address, ...)
   P.needs_callback(subject)
   check_address(address, subject)
   api.message_begin(ctx, address, #address)
   for i = 1, select("#", ...) do put((select(i, ...)), subject) end
-  P.handle_result(api.message_send(ctx, route, ip, port))
+  P.handle_result(api.message_send(ctx, route, to))
 end
 
 local osc = {}
@@ -64,11 +64,11 @@ function P.remove_handlers()
 end
 function osc.send(self, address, ...)
   check(self, "send")
-  send("osc:send", 0, 0, 0, address, ...)
+  send("osc:send", 0, nil, address, ...)
 end
 function osc.reply(self, address, ...)
   check(self, "reply")
-  send("osc:reply", 1, 0, 0, address, ...)
+  send("osc:reply", 1, nil, address, ...)
 end
 function osc.listen(self, port)
   check(self, "listen")
@@ -166,10 +166,11 @@ function osc.stream_to(self, target, opts)
 end
 
 local A = ffi.typeof("address")
+local parsed = ffi.new("struct LimberAddress")
 local address_methods = {
   send = function(to, address, ...)
     if not istype(A, to) then fail("send is a method: write osc:to(\"host:port\"):send(…)") end
-    send("osc:to():send", 2, to.ip_, to.port_, address, ...)
+    send("osc:to():send", 2, to.to_, address, ...)
   end,
 }
 ffi.metatype(A, {
@@ -178,16 +179,15 @@ ffi.metatype(A, {
   end,
   __newindex = function() fail("an address has nothing to set") end,
   __tostring = function(a)
-    local ip = a.ip_
-    return string.format("%d.%d.%d.%d:%d", math.floor(ip / 2 ^ 24), math.floor(ip / 2 ^ 16) % 256,
-      math.floor(ip / 2 ^ 8) % 256, ip % 256, a.port_)
+    api.address_text(ctx, a.to_)
+    return P.text()
   end,
 })
 function osc.to(self, target)
   check(self, "to")
   P.check_text(target, "osc:to")
-  P.handle_result(api.osc_address(ctx, target, #target))
-  return A(answer.number[0], answer.number[1])
+  P.handle_result(api.osc_address(ctx, target, #target, parsed))
+  return A(parsed)
 end
 
 P.osc = setmetatable({}, {

@@ -16,7 +16,7 @@ constexpr std::size_t kDatagram = 65536;  // more than the UDP maximum, so nothi
 struct DatagramReader::Buffers {
   std::vector<char> bytes = std::vector<char>(kMaxBatch * kDatagram);
   std::array<iovec, kMaxBatch> pieces{};
-  std::array<sockaddr_in, kMaxBatch> from{};
+  std::array<SocketAddress, kMaxBatch> from{};
   std::array<mmsghdr, kMaxBatch> headers{};
   struct alignas(cmsghdr) Control {
     std::array<char, 64> bytes;
@@ -30,8 +30,8 @@ struct DatagramReader::Buffers {
       pieces[i] = {bytes.data() + i * kDatagram, kDatagram};
       msghdr& h = headers[i].msg_hdr;
       h = {};
-      h.msg_name = &from[i];
-      h.msg_namelen = sizeof from[i];
+      h.msg_name = from[i].get();
+      h.msg_namelen = SocketAddress::kMaxLength;
       h.msg_iov = &pieces[i];
       h.msg_iovlen = 1;
       h.msg_control = control[i].bytes.data();
@@ -62,7 +62,7 @@ std::span<const Datagram> DatagramReader::read(int fd) {
   if (count <= 0) return {};
   const auto got = static_cast<std::size_t>(count);
   for (std::size_t i = 0; i < got; i++) {
-    b.datagrams[i] = {static_cast<const char*>(b.pieces[i].iov_base), b.headers[i].msg_len, endpoint_of(b.from[i]),
+    b.datagrams[i] = {static_cast<const char*>(b.pieces[i].iov_base), b.headers[i].msg_len, b.from[i].endpoint(),
                       b.dropped(i)};
   }
   return std::span(b.datagrams).first(got);

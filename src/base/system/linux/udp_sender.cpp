@@ -1,4 +1,5 @@
 // Sends batches with sendmmsg() and UDP segmentation; reads undelivered datagrams from the error queue (IP_RECVERR).
+// A socket of IPv6 is opened when a datagram is sent to such an address.
 #include <netinet/udp.h>
 
 #include "base/system/net/socket_address.h"
@@ -40,14 +41,14 @@ std::size_t run_length(std::span<const std::uint32_t> sizes, std::size_t first, 
   return count;
 }
 
-void add_piece(Call& call, std::size_t i, const sockaddr_in& to, const char* data, std::size_t bytes,
+void add_piece(Call& call, std::size_t i, const SocketAddress& to, const char* data, std::size_t bytes,
                std::size_t datagrams) {
   call.pieces[i] = {const_cast<char*>(data), bytes};
   call.datagrams[i] = datagrams;
   msghdr& h = call.headers[i].msg_hdr;
   h = {};
-  h.msg_name = const_cast<sockaddr_in*>(&to);
-  h.msg_namelen = sizeof to;
+  h.msg_name = const_cast<sockaddr*>(to.get());
+  h.msg_namelen = to.length();
   h.msg_iov = &call.pieces[i];
   h.msg_iovlen = 1;
   if (datagrams == 1) return;
@@ -68,7 +69,7 @@ bool segmentation_unsupported(int error) {
 
 BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
                        bool& segmentation) {
-  const sockaddr_in address = socket_address(to);
+  const SocketAddress address(to);
   Call call;
   BatchResult result;
   std::size_t at = 0;  // bytes before datagram `result.sent`
@@ -107,10 +108,13 @@ BatchResult send_batch(int fd, const Endpoint& to, std::span<const char> bytes, 
 // Returns the error of an undelivered datagram, or 0 for other messages.
 int error_of(msghdr& message) {
   for (cmsghdr* c = CMSG_FIRSTHDR(&message); c != nullptr; c = CMSG_NXTHDR(&message, c)) {
-    if (c->cmsg_level != IPPROTO_IP || c->cmsg_type != IP_RECVERR) continue;
+    const bool ipv4 = c->cmsg_level == IPPROTO_IP && c->cmsg_type == IP_RECVERR;
+    const bool ipv6 = c->cmsg_level == IPPROTO_IPV6 && c->cmsg_type == IPV6_RECVERR;
+    if (!ipv4 && !ipv6) continue;
     sock_extended_err report{};
     std::memcpy(&report, CMSG_DATA(c), sizeof report);
-    if (report.ee_origin == SO_EE_ORIGIN_ICMP) return static_cast<int>(report.ee_errno);
+    if (report.ee_origin == SO_EE_ORIGIN_ICMP || report.ee_origin == SO_EE_ORIGIN_ICMP6)
+      return static_cast<int>(report.ee_errno);
   }
   return 0;
 }
@@ -118,7 +122,30 @@ int error_of(msghdr& message) {
 }  // namespace
 
 struct UdpSender::State {
-  UdpSocket socket;
+  int send_buffer = 0;
+  int receive_buffer = 0;
+  UdpSocket ipv4, ipv6;
+
+  Result<UdpSocket> open_any(bool is_v6) const {
+    Result<UdpSocket> socket = open_udp({is_v6 ? IpAddress(0, 0) : IpAddress(), 0});
+    if (!socket) return socket;
+    if (send_buffer > 0) set_send_buffer(socket->fd(), send_buffer);
+    if (receive_buffer > 0) set_receive_buffer(socket->fd(), receive_buffer);
+    allow_broadcast(socket->fd());
+    const int on = 1;
+    setsockopt(socket->fd(), is_v6 ? IPPROTO_IPV6 : IPPROTO_IP, is_v6 ? IPV6_RECVERR : IP_RECVERR, &on, sizeof on);
+    return socket;
+  }
+
+  // Returns -1 if this machine has no IPv6.
+  int socket_to(const Endpoint& to) {
+    if (!to.ip.is_v6) return ipv4.fd();
+    if (!ipv6.is_open()) {
+      Result<UdpSocket> socket = open_any(true);
+      if (socket) ipv6 = std::move(*socket);
+    }
+    return ipv6.fd();
+  }
 };
 
 UdpSender::UdpSender() = default;
@@ -127,46 +154,50 @@ UdpSender::UdpSender(UdpSender&&) noexcept = default;
 UdpSender& UdpSender::operator=(UdpSender&&) noexcept = default;
 
 Result<void> UdpSender::open(int send_buffer, int receive_buffer) {
-  Result<UdpSocket> socket = open_udp({});
+  State state{send_buffer, receive_buffer, {}, {}};
+  Result<UdpSocket> socket = state.open_any(false);
   if (!socket) return Error{socket.error()};
-  if (send_buffer > 0) set_send_buffer(socket->fd(), send_buffer);
-  if (receive_buffer > 0) set_receive_buffer(socket->fd(), receive_buffer);
-  allow_broadcast(socket->fd());
-  const int on = 1;
-  setsockopt(socket->fd(), IPPROTO_IP, IP_RECVERR, &on, sizeof on);
-  state_ = std::make_unique<State>(State{std::move(*socket)});
+  state.ipv4 = std::move(*socket);
+  state_ = std::make_unique<State>(std::move(state));
   return {};
 }
 
 void UdpSender::close() { state_.reset(); }
 
 int UdpSender::send(const Endpoint& to, std::span<const char> packet) {
-  return send_datagram(state_ == nullptr ? -1 : state_->socket.fd(), to, packet);
+  if (state_ == nullptr) return EBADF;
+  const int fd = state_->socket_to(to);
+  return fd < 0 ? EAFNOSUPPORT : send_datagram(fd, to, packet);
 }
 
 BatchResult UdpSender::send(const Endpoint& to, std::span<const char> bytes, std::span<const std::uint32_t> sizes,
                             bool& segmentation) {
-  return send_batch(state_ == nullptr ? -1 : state_->socket.fd(), to, bytes, sizes, segmentation);
+  if (state_ == nullptr) return {0, EBADF};
+  const int fd = state_->socket_to(to);
+  return fd < 0 ? BatchResult{0, EAFNOSUPPORT} : send_batch(fd, to, bytes, sizes, segmentation);
 }
 
 std::optional<SendFailure> UdpSender::next_failure() {
-  struct alignas(cmsghdr) Control {
-    std::array<char, 256> bytes;
-  };
-  while (state_ != nullptr) {
-    Control control;
-    sockaddr_in to{};
-    char nothing = 0;
-    iovec piece{&nothing, sizeof nothing};
-    msghdr message{};
-    message.msg_name = &to;
-    message.msg_namelen = sizeof to;
-    message.msg_iov = &piece;
-    message.msg_iovlen = 1;
-    message.msg_control = control.bytes.data();
-    message.msg_controllen = control.bytes.size();
-    if (recvmsg(state_->socket.fd(), &message, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) break;
-    if (const int error = error_of(message); error != 0) return SendFailure{endpoint_of(to), error};
+  if (state_ == nullptr) return std::nullopt;
+  for (const UdpSocket* const socket : {&state_->ipv4, &state_->ipv6}) {
+    while (socket->is_open()) {
+      struct alignas(cmsghdr) Control {
+        std::array<char, 256> bytes;
+      };
+      Control control;
+      SocketAddress to;
+      char nothing = 0;
+      iovec piece{&nothing, sizeof nothing};
+      msghdr message{};
+      message.msg_name = to.get();
+      message.msg_namelen = SocketAddress::kMaxLength;
+      message.msg_iov = &piece;
+      message.msg_iovlen = 1;
+      message.msg_control = control.bytes.data();
+      message.msg_controllen = control.bytes.size();
+      if (recvmsg(socket->fd(), &message, MSG_ERRQUEUE | MSG_DONTWAIT) < 0) break;
+      if (const int error = error_of(message); error != 0) return SendFailure{to.endpoint(), error};
+    }
   }
   return std::nullopt;
 }

@@ -1,15 +1,19 @@
 // The network interfaces of this machine.
 #pragma once
 
-#include <cstdint>
 #include <vector>
+
+#include "base/system/net/ip_address.h"
 
 namespace limber::system {
 
-/// An IPv4 address of this machine, in host byte order, with the length of its network prefix.
+/// An address of this machine, with the length of its network prefix.
 struct Subnet {
-  std::uint32_t ip = 0;
+  IpAddress ip = {};
   int bits = 0;
+
+  /// The address that reaches all machines of an IPv4 network; that of the machine itself for IPv6 and loopback.
+  IpAddress broadcast() const;
 };
 
 /// Returns the addresses of all interfaces that are up, including loopback; empty on error. [any]

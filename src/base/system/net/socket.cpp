@@ -1,11 +1,10 @@
 // Sockets of POSIX.
 #include "base/system/net/socket.h"
 
-#include <arpa/inet.h>
 #include <netdb.h>
 
-#include <array>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -14,48 +13,44 @@
 
 namespace limber::system {
 
-std::string endpoint_text(const Endpoint& e) {
-  return fmt::format("{}.{}.{}.{}:{}", e.ip >> 24, e.ip >> 16 & 255u, e.ip >> 8 & 255u, e.ip & 255u, e.port);
-}
+std::string endpoint_text(const Endpoint& e) { return host_port_text(ip_text(e.ip), e.port); }
 
-std::optional<std::uint32_t> parse_ipv4(const std::string& text) {
-  in_addr number{};
-  if (inet_pton(AF_INET, text.c_str(), &number) != 1) return std::nullopt;
-  return ntohl(number.s_addr);
-}
-
-bool is_ip_address(const std::string& text) {
-  std::array<unsigned char, 16> bytes;
-  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 || inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
-}
-
-Result<Endpoint> resolve(const std::string& host, std::uint16_t port) {
-  if (const std::optional<std::uint32_t> ip = parse_ipv4(host)) return Endpoint{*ip, port};
+Result<Endpoint> resolve(const std::string& host, std::uint16_t port, IpVersion preferred) {
+  if (const std::optional<IpAddress> ip = parse_ip(host)) return Endpoint{*ip, port};
+  if (is_ip_address(host))
+    return Error{fmt::format("there is no network interface '{}'", host.substr(host.find('%') + 1))};
   addrinfo hints{};
-  hints.ai_family = AF_INET;
+  hints.ai_family = AF_UNSPEC;
   hints.ai_socktype = SOCK_DGRAM;
   addrinfo* found = nullptr;
   if (const int fault = getaddrinfo(host.c_str(), nullptr, &hints, &found); fault != 0) {
-    return Error{fmt::format("no IPv4 address for '{}' ({})", host, gai_strerror(fault))};
+    return Error{fmt::format("no address for '{}' ({})", host, gai_strerror(fault))};
   }
   const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
-  const auto* address = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
-  return Endpoint{ntohl(address->sin_addr.s_addr), port};
+  std::optional<IpAddress> chosen;
+  for (const addrinfo* each = found; each != nullptr; each = each->ai_next) {
+    if (each->ai_family != AF_INET && each->ai_family != AF_INET6) continue;
+    const IpAddress ip = SocketAddress(*each->ai_addr).endpoint().ip;
+    const bool fits = ip.is_v6 == (preferred == IpVersion::v6);
+    if (!chosen || fits) chosen = ip;
+    if (fits) break;
+  }
+  if (!chosen) return Error{fmt::format("no address for '{}'", host)};
+  return Endpoint{*chosen, port};
 }
 
 Endpoint local_endpoint(int fd) {
-  sockaddr_in address{};
-  socklen_t length = sizeof address;
-  if (getsockname(fd, reinterpret_cast<sockaddr*>(&address), &length) != 0) return {};
-  return endpoint_of(address);
+  SocketAddress address;
+  if (getsockname(fd, address.get(), address.receive_length()) != 0) return {};
+  return address.endpoint();
 }
 
 Descriptor connect_tcp(const Endpoint& to) {
-  Descriptor socket = open_socket(AF_INET, SOCK_STREAM);
+  const SocketAddress at(to);
+  Descriptor socket = open_socket(at.family(), SOCK_STREAM);
   if (!socket.is_open()) return socket;
   set_blocking(socket.fd());
-  const sockaddr_in at = socket_address(to);
-  if (connect(socket.fd(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) return {};
+  if (connect(socket.fd(), at.get(), at.length()) != 0) return {};
   return socket;
 }
 

@@ -1,37 +1,35 @@
-// IPv4 endpoints, name resolution, TCP connections, and I/O on connected sockets.
+// Endpoints, name resolution, TCP connections, and I/O on connected sockets.
 #pragma once
 
 #include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include "base/result.h"
 #include "base/system/descriptor.h"
+#include "base/system/net/ip_address.h"
 
 namespace limber::system {
 
-/// An IPv4 address and port, both in host byte order.
+/// An address and a port in host byte order.
 struct Endpoint {
-  std::uint32_t ip = 0;
+  IpAddress ip = {};
   std::uint16_t port = 0;
 
   auto operator<=>(const Endpoint&) const = default;  // NOLINT(modernize-use-nullptr): a false alarm of clang-tidy 14
 };
 
-/// Returns "127.0.0.1:9003". [any]
+/// Returns "127.0.0.1:9003" or "[::1]:9003". [any]
 std::string endpoint_text(const Endpoint& endpoint);
 
-/// Parses an address such as "192.168.1.7", to host byte order; nullopt if it is invalid. [any]
-std::optional<std::uint32_t> parse_ipv4(const std::string& text);
-/// True for an IPv4 or IPv6 address without brackets or port. [any]
-bool is_ip_address(const std::string& text);
+/// The kind of address to prefer if a name has both.
+enum class IpVersion : std::uint8_t { v4, v6 };
 
 /// Resolves a host: an address immediately, a name with the system's resolver, which may take seconds. The result has
 /// this port. [any]
-Result<Endpoint> resolve(const std::string& host, std::uint16_t port);
+Result<Endpoint> resolve(const std::string& host, std::uint16_t port, IpVersion preferred = IpVersion::v4);
 
 /// Returns the endpoint that a socket is bound to. [any]
 Endpoint local_endpoint(int fd);

@@ -17,20 +17,16 @@ namespace {
 
 constexpr int kTcpBacklog = 64;
 
-void enable(int fd, int level, int option) {
-  const int on = 1;
-  setsockopt(fd, level, option, &on, sizeof on);
-}
-
 }  // namespace
 
 Result<Descriptor> listen_tcp(const Endpoint& at) {
   const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
-  Descriptor socket = open_socket(AF_INET, SOCK_STREAM);
+  const SocketAddress address(at);
+  Descriptor socket = open_socket(address.family(), SOCK_STREAM);
   if (!socket.is_open()) return system_error();
+  if (at.ip.is_v6) enable(socket.fd(), IPPROTO_IPV6, IPV6_V6ONLY);
   enable(socket.fd(), SOL_SOCKET, SO_REUSEADDR);  // closed connections of an earlier run do not block the port
-  const sockaddr_in address = socket_address(at);
-  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
+  if (bind(socket.fd(), address.get(), address.length()) != 0) return system_error();
   if (listen(socket.fd(), kTcpBacklog) != 0) return system_error();
   return socket;
 }
@@ -41,13 +37,12 @@ TcpConnection accept_tcp(const Descriptor& listener) {
   const int fd = connection.socket.fd();
   enable(fd, IPPROTO_TCP, TCP_NODELAY);
   enable(fd, SOL_SOCKET, SO_KEEPALIVE);
-  sockaddr_in address{};
-  socklen_t length = sizeof address;
-  if (getpeername(fd, reinterpret_cast<sockaddr*>(&address), &length) != 0) {
+  SocketAddress address;
+  if (getpeername(fd, address.get(), address.receive_length()) != 0) {
     errno = ECONNABORTED;  // the peer has closed already
     return {};
   }
-  connection.peer = endpoint_of(address);
+  connection.peer = address.endpoint();
   return connection;
 }
 

@@ -1,7 +1,10 @@
 // UDP sockets of POSIX: single datagrams.
 #include "base/system/net/udp_socket.h"
 
+#include <net/if.h>
+
 #include <cerrno>
+#include <memory>
 #include <system_error>
 
 #include "base/system/net/socket_address.h"
@@ -11,32 +14,66 @@ namespace limber::system {
 
 Endpoint UdpSocket::local() const { return local_endpoint(fd()); }
 
-Result<UdpSocket> open_udp(const Endpoint& at) {
-  const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
-  UdpSocket socket(open_socket(AF_INET, SOCK_DGRAM));
+namespace {
+
+Error system_error() { return Error{std::generic_category().message(errno)}; }
+
+Result<UdpSocket> open_bound(const Endpoint& at, PortSharing sharing) {
+  const SocketAddress address(at);
+  UdpSocket socket(open_socket(address.family(), SOCK_DGRAM));
   if (!socket.is_open()) return system_error();
-  const sockaddr_in address = socket_address(at);
-  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
+  if (at.ip.is_v6) enable(socket.fd(), IPPROTO_IPV6, IPV6_V6ONLY);
+  if (sharing == PortSharing::shared) enable(socket.fd(), SOL_SOCKET, SO_REUSEADDR);
+  if (bind(socket.fd(), address.get(), address.length()) != 0) return system_error();
   return socket;
 }
 
-Result<UdpSocket> open_multicast(const Endpoint& group, std::span<const std::uint32_t> interfaces) {
-  const auto system_error = [] { return Error{std::generic_category().message(errno)}; };
-  UdpSocket socket(open_socket(AF_INET, SOCK_DGRAM));
-  if (!socket.is_open()) return system_error();
-  const int on = 1;
-  setsockopt(socket.fd(), SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-  const sockaddr_in address = socket_address(group);
-  if (bind(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return system_error();
-  errno = ENODEV;
+// Both return true if the interface has joined, also earlier: it may have several addresses.
+bool join(int fd, const IpAddress& group, const IpAddress& interface) {
+  ip_mreq request{};
+  request.imr_multiaddr.s_addr = htonl(static_cast<std::uint32_t>(group.low));
+  request.imr_interface.s_addr = htonl(static_cast<std::uint32_t>(interface.low));
+  return setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) == 0 || errno == EADDRINUSE;
+}
+
+bool join(int fd, const ipv6_mreq& request) {
+  return setsockopt(fd, IPPROTO_IPV6, IPV6_JOIN_GROUP, &request, sizeof request) == 0 || errno == EADDRINUSE;
+}
+
+bool join_ipv6(int fd, const IpAddress& group) {
+  ipv6_mreq request{};
+  request.ipv6mr_multiaddr = SocketAddress(Endpoint{group, 0}).ipv6();
+  request.ipv6mr_interface = group.zone;
+  if (group.zone != 0) return join(fd, request);
+  const std::unique_ptr<struct if_nameindex[], decltype(&if_freenameindex)> list(if_nameindex(), &if_freenameindex);
   bool joined = false;
-  for (const std::uint32_t interface : interfaces) {
-    ip_mreq request{};
-    request.imr_multiaddr = address.sin_addr;
-    request.imr_interface.s_addr = htonl(interface);
-    // an interface with several addresses has joined already
-    const bool done = setsockopt(socket.fd(), IPPROTO_IP, IP_ADD_MEMBERSHIP, &request, sizeof request) == 0;
-    joined = joined || done || errno == EADDRINUSE;
+  for (std::size_t i = 0; list != nullptr && list[i].if_index != 0; i++) {
+    request.ipv6mr_interface = list[i].if_index;
+    joined = join(fd, request) || joined;
+  }
+  return joined;
+}
+
+}  // namespace
+
+Result<UdpSocket> open_udp(const Endpoint& at, PortSharing sharing) {
+  Result<UdpSocket> socket = open_bound(at, sharing);
+#ifdef IP_MULTICAST_ALL
+  // else a shared port receives the groups that other sockets have joined
+  const int off = 0;
+  if (socket && sharing == PortSharing::shared)
+    setsockopt(socket->fd(), IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
+#endif
+  return socket;
+}
+
+Result<UdpSocket> open_multicast(const Endpoint& group, std::span<const IpAddress> interfaces) {
+  Result<UdpSocket> socket = open_bound(group, PortSharing::shared);
+  if (!socket) return socket;
+  errno = ENODEV;
+  bool joined = group.ip.is_v6 && join_ipv6(socket->fd(), group.ip);
+  for (const IpAddress& interface : interfaces) {
+    if (!group.ip.is_v6 && !interface.is_v6) joined = join(socket->fd(), group.ip, interface) || joined;
   }
   if (!joined) return system_error();
   return socket;
@@ -44,10 +81,7 @@ Result<UdpSocket> open_multicast(const Endpoint& group, std::span<const std::uin
 
 void set_send_buffer(int fd, int bytes) { setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &bytes, sizeof bytes); }
 
-void allow_broadcast(int fd) {
-  const int on = 1;
-  setsockopt(fd, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
-}
+void allow_broadcast(int fd) { enable(fd, SOL_SOCKET, SO_BROADCAST); }
 
 void send_multicast_from(int fd, std::uint32_t ip) {
   const unsigned char routers = 8;
@@ -62,10 +96,9 @@ bool may_report_earlier_datagram(int error) {
 }
 
 int send_datagram(int fd, const Endpoint& to, std::span<const char> packet) {
-  const sockaddr_in address = socket_address(to);
+  const SocketAddress address(to);
   const auto send = [&] {
-    const auto* where = reinterpret_cast<const sockaddr*>(&address);
-    return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal, where, sizeof address) >= 0;
+    return sendto(fd, packet.data(), packet.size(), MSG_DONTWAIT | kNoSignal, address.get(), address.length()) >= 0;
   };
   return send() || (may_report_earlier_datagram(errno) && send()) ? 0 : errno;
 }

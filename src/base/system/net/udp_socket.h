@@ -21,14 +21,18 @@ class UdpSocket : public Descriptor {
   Endpoint local() const;
 };
 
-/// Opens a non-blocking UDP socket bound to `at` (port 0: the system chooses). The error is the system's message.
-Result<UdpSocket> open_udp(const Endpoint& at);
+/// Whether other programs may open the same port. They all receive broadcast and multicast datagrams; others reach one
+/// of the programs only.
+enum class PortSharing : std::uint8_t { exclusive, shared };
 
-/// True for the address of a multicast group, 224.0.0.0 to 239.255.255.255.
-constexpr bool is_multicast(std::uint32_t ip) { return ip >> 28U == 0xeU; }
-/// Opens a non-blocking UDP socket that receives the datagrams for a multicast group, on each interface with one of
-/// these addresses. Other programs may receive them, too. The error is the system's message.
-Result<UdpSocket> open_multicast(const Endpoint& group, std::span<const std::uint32_t> interfaces);
+/// Opens a non-blocking UDP socket bound to `at` (port 0: the system chooses). One of IPv6 receives no IPv4. The error
+/// is the system's message.
+Result<UdpSocket> open_udp(const Endpoint& at, PortSharing sharing = PortSharing::exclusive);
+
+/// Opens a non-blocking UDP socket that receives the datagrams for a multicast group. IPv4: on each interface with one
+/// of these addresses; IPv6: on the interface of the group's zone, or on all. Other programs may receive them, too. The
+/// error is the system's message.
+Result<UdpSocket> open_multicast(const Endpoint& group, std::span<const IpAddress> interfaces);
 
 /// Requests a receive buffer of this size; returns the size that the system grants, in bytes.
 int set_receive_buffer(int fd, int bytes);

@@ -23,11 +23,10 @@ std::span<const Datagram> DatagramReader::read(int fd) {
   std::size_t got = 0;
   for (; got < kMaxBatch; got++) {
     char* const to = buffers_->bytes.data() + got * kDatagram;
-    sockaddr_in from{};
-    socklen_t length = sizeof from;
-    const ssize_t size = recvfrom(fd, to, kDatagram, MSG_DONTWAIT, reinterpret_cast<sockaddr*>(&from), &length);
+    SocketAddress from;
+    const ssize_t size = recvfrom(fd, to, kDatagram, MSG_DONTWAIT, from.get(), from.receive_length());
     if (size < 0) break;
-    buffers_->datagrams[got] = {to, static_cast<std::size_t>(size), endpoint_of(from), std::nullopt};
+    buffers_->datagrams[got] = {to, static_cast<std::size_t>(size), from.endpoint(), std::nullopt};
   }
   return std::span(buffers_->datagrams).first(got);
 }

@@ -34,13 +34,13 @@ struct UdpSender::State {
   int socket_to(const Endpoint& to) {
     auto known = connections.find(to);
     if (known == connections.end()) {
-      Descriptor socket = open_socket(AF_INET, SOCK_DGRAM);
+      const SocketAddress address(to);
+      Descriptor socket = open_socket(address.family(), SOCK_DGRAM);
       if (!socket.is_open()) return -1;
       if (send_buffer > 0) set_send_buffer(socket.fd(), send_buffer);
       if (receive_buffer > 0) set_receive_buffer(socket.fd(), receive_buffer);
       allow_broadcast(socket.fd());
-      const sockaddr_in address = socket_address(to);
-      if (connect(socket.fd(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return -1;
+      if (connect(socket.fd(), address.get(), address.length()) != 0) return -1;
       if (connections.size() >= kMaxSockets) close_oldest();
       known = connections.emplace(to, Connection{std::move(socket), 0}).first;
     }

@@ -45,7 +45,7 @@ Message message_of(std::string name, const PsnTracker& tracker) {
 }  // namespace
 
 // Returns the state of the sender. A new one replaces the one that has been silent for the longest time.
-PsnInput::Sender& PsnInput::sender_of(std::uint32_t ip, std::int64_t now) {
+PsnInput::Sender& PsnInput::sender_of(const system::IpAddress& ip, std::int64_t now) {
   auto found = std::ranges::find(senders_, ip, &Sender::ip);
   if (found == senders_.end()) {
     if (senders_.size() < kMaxSenders) {
@@ -80,7 +80,8 @@ bool PsnInput::is_late(Sender& sender, std::uint64_t timestamp) {
   return late;
 }
 
-Result<std::vector<Message>> PsnInput::translate(std::string_view bytes, std::uint32_t ip, std::int64_t now) {
+Result<std::vector<Message>> PsnInput::translate(std::string_view bytes, const system::IpAddress& ip,
+                                                 std::int64_t now) {
   Result<PsnPacket> packet = parse_psn(bytes);
   if (!packet) return Error{packet.error()};
   Sender& sender = sender_of(ip, now);

@@ -25,11 +25,11 @@ class PsnInput {
 
   /// Returns the messages of a packet from the address `ip` at the time `now` (ns). None for an info packet, for one
   /// that is older than its predecessor, and until the names of the sender's trackers are known. Error: parse_psn().
-  Result<std::vector<Message>> translate(std::string_view bytes, std::uint32_t ip, std::int64_t now);
+  Result<std::vector<Message>> translate(std::string_view bytes, const system::IpAddress& ip, std::int64_t now);
 
  private:
   struct Sender {
-    std::uint32_t ip = 0;
+    system::IpAddress ip;
     std::int64_t first_seen = 0;  // ns
     std::int64_t last_seen = 0;
     std::uint64_t timestamp = 0;  // of the newest data packet
@@ -37,7 +37,7 @@ class PsnInput {
     std::map<std::uint16_t, std::string> names;
   };
 
-  Sender& sender_of(std::uint32_t ip, std::int64_t now);
+  Sender& sender_of(const system::IpAddress& ip, std::int64_t now);
   static void learn(Sender& sender, const std::vector<PsnTracker>& trackers);
   static bool is_late(Sender& sender, std::uint64_t timestamp);
 

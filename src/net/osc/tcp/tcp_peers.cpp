@@ -28,18 +28,18 @@ std::vector<std::string> TcpPeers::listen(const std::vector<ListenAddress>& addr
   std::vector<std::string> errors;
   for (const ListenAddress& address : addresses) {
     if (std::ranges::find(listeners_, address, &Listener::address) != listeners_.end()) continue;
-    const std::string name = fmt::format("{}:{}", printable(address.address), address.port);
+    const std::string name = host_port_text(printable(address.address), address.port);
     const Result<Endpoint> at = resolve(address.address, address.port);
     Result<system::Descriptor> socket = at ? system::listen_tcp(*at) : Error{at.error()};
     if (!socket) {
       errors.push_back(fmt::format("OSC can't listen on {} (TCP): {}. {}", name, socket.error(), kTcpHint));
       continue;
     }
-    if (at->ip == 0) log_warning("OSC in {} (TCP): open to the network", name);
+    if (at->ip.is_any()) log_warning("OSC in {} (TCP): open to the network", name);
     listeners_.push_back({address, std::move(*socket)});
   }
   // host names are not tried again, because a look-up may take seconds
-  const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return parse_ipv4(a.address).has_value(); });
+  const bool numbers = std::ranges::all_of(addresses, [](const auto& a) { return system::is_ip_address(a.address); });
   retry_at_.reset();
   if (!errors.empty() && numbers) retry_at_ = clock_.steady() + kRetryListen;
   return errors;

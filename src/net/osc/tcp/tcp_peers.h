@@ -23,7 +23,7 @@
 namespace limber::osc {
 
 struct TcpCallbacks {
-  std::function<bool(std::uint32_t ip)> is_allowed;
+  std::function<bool(const IpAddress& ip)> is_allowed;
   /// Called for each packet.
   std::function<void(const Endpoint& from, std::string_view packet)> receive;
   /// Called after a connection has ended.

@@ -1,13 +1,18 @@
-// OSC monitor: incoming and outgoing messages and the counters. A frequent address is shown only a few times per
-// second.
+// OSC monitor: incoming and outgoing messages, the counters and the targets. A frequent address is shown only a few
+// times per second.
 #include <deque>
 #include <iterator>
 #include <memory>
+#include <string>
+#include <string_view>
 #include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
+#include "base/text.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
@@ -34,6 +39,76 @@ constexpr CounterText kCounters[] = {
     {"Clamped", "Values received that were outside their range"},
     {"Dropped", "Messages received that were lost"}};
 
+// The targets of OSC output, in a part that opens.
+class OscTargets {
+ public:
+  void draw(GuiContext& context) {
+    const std::uint64_t version = context.link.osc.version();
+    if (version != version_) read(context.link.osc.targets());
+    version_ = version;
+    const bool open = ImGui::TreeNode("targets", "Targets: %d", static_cast<int>(targets_.size()));
+    context.names.add("osc.targets");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Receivers of streams and events; click to add and remove them");
+    if (!open) return;
+    for (std::size_t i = 0; i < targets_.size(); i++) draw_target(context, targets_[i], static_cast<int>(i));
+    draw_fields(context);
+    ImGui::TreePop();
+  }
+
+ private:
+  void read(std::string_view text) {
+    targets_.clear();
+    if (text.empty()) return;
+    for (const std::string_view line : split(text, '\n')) targets_.emplace_back(line);
+  }
+
+  static void draw_target(GuiContext& context, const std::string& target, int number) {
+    ImGui::PushID(number);
+    const float button = ImGui::GetFrameHeight();
+    const float width = ImGui::GetContentRegionAvail().x - button - ImGui::GetStyle().ItemSpacing.x;
+    const float right = ImGui::GetCursorPosX() + width + ImGui::GetStyle().ItemSpacing.x;
+    ImGui::AlignTextToFramePadding();
+    const std::string shown = elided(target, width, text_width);
+    ImGui::TextUnformatted(shown.c_str());
+    context.names.add(fmt::format("osc.target{}", number));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", target.c_str());
+    ImGui::SameLine(right);
+    const std::string_view address = std::string_view(target).substr(0, target.find(" ("));
+    if (ImGui::Button("\u00d7", {button, 0})) context.send("/osc/target/remove", {Arg::of(address)});
+    context.names.add(fmt::format("osc.target{}.remove", number));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Send nothing more to this target");
+    ImGui::PopID();
+  }
+
+  void draw_fields(GuiContext& context) {
+    const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
+    const float padding = 2 * ImGui::GetStyle().FramePadding.x;
+    const float buttons = text_width("Add") + text_width("Reset") + 2 * (padding + gap);
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - buttons);
+    bool added =
+        ImGui::InputTextWithHint("##target", "192.168.1.5:9005,rate=30", &text_, ImGuiInputTextFlags_EnterReturnsTrue);
+    context.names.add("osc.target");
+    if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
+      ImGui::SetTooltip("HOST:PORT and settings: rate=60, streams=pos+rot, bodies=arm*, bundle=1472, errors=on");
+    ImGui::SameLine(0, gap);
+    ImGui::BeginDisabled(text_.empty());
+    added = ImGui::Button("Add") || added;
+    context.names.add("osc.target.add");
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+      ImGui::SetTooltip("Add this target, or change the settings of one");
+    ImGui::SameLine(0, gap);
+    if (ImGui::Button("Reset")) context.send("/osc/target/reset");
+    context.names.add("osc.target.reset");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("The targets of the command line or the scene");
+    if (added && !text_.empty()) context.send("/osc/target/add", {Arg::of(text_)});
+  }
+
+  std::uint64_t version_ = 0;
+  std::vector<std::string> targets_;
+  std::string text_;
+};
+
 class OscPanel : public Panel {
  public:
   void draw(GuiContext& context) override {
@@ -44,6 +119,7 @@ class OscPanel : public Panel {
       watch_ = std::make_unique<engine::MessageLog::Watch>(context.link.message_log);
     }
     draw_counters(context);
+    targets_.draw(context);
     search_field(context.names, "osc.filter", "Filter addresses", filter_, -1);
     for (const engine::LoggedMessage& line : context.link.message_log.since(last_line_)) add_line(line);
     if (!ImGui::BeginChild("##lines", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
@@ -141,6 +217,7 @@ class OscPanel : public Panel {
     ImGui::TextDisabled("%s", repeats.c_str());
   }
 
+  OscTargets targets_;
   std::unique_ptr<engine::MessageLog::Watch> watch_;
   int hidden_frames_ = 0;  // number of frames since the monitor was last drawn
   std::uint64_t last_line_ = 0;

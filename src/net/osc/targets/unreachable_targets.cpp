@@ -1,5 +1,5 @@
 // Only the first failure of a target is logged.
-#include "net/osc/unreachable_targets.h"
+#include "net/osc/targets/unreachable_targets.h"
 
 #include <algorithm>
 #include <cerrno>
