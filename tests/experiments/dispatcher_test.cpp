@@ -53,7 +53,7 @@ class FakeWorkers final : public Workers {
         return;
     }
   }
-  std::vector<Event> wait(std::chrono::milliseconds limit) override {
+  std::vector<Event> wait(std::chrono::microseconds limit) override {
     std::optional<std::size_t> first;
     for (std::size_t i = 0; i < pending_.size(); i++) {
       if (!pending_[i].empty() && (!first || pending_[i].front().at < pending_[*first].front().at)) first = i;
