@@ -51,6 +51,9 @@ class Experiment {
   }
 
  private:
+  experiments::Workers& workers(const std::string& program);
+  void create_dispatcher(const std::string& program);
+
   ExperimentOptions options_;
   experiments::Workers* ranks_;
   std::unique_ptr<ProcessWorkers> processes_;
