@@ -123,7 +123,7 @@ class LoadedRanks final : public RankMessages {
 };
 
 // The time in which ranks wait for rank 0, of all their time, if rank 0 has a core of its own. Without the time of MPI.
-TEST(LongMpi, RanksSeldomWaitForRankZero) {
+TEST(LongMpi, RanksWaitForLessThanOnePercent) {
   for (const double duration : {0.026, 0.1, 1.0}) {
     LoadClock clock;
     LoadedRanks ranks(clock, 1000, duration);
