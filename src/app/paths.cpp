@@ -63,6 +63,15 @@ std::string link_program() {
   return system::is_executable(beside) ? beside : "limber-link";
 }
 
+std::string module_file(std::string_view name) {
+  const fs::path folder = fs::path(system::executable_path()).parent_path();
+  for (const fs::path& place : {folder, folder.parent_path() / "lib" / "limber"}) {
+    std::error_code error;
+    if (fs::path file = place / name; fs::is_regular_file(file, error)) return file.string();
+  }
+  return {};
+}
+
 std::string shader_dir() {
   const std::string data = data_dir();
   std::error_code error;

@@ -20,6 +20,10 @@ std::string program_command();
 /// Returns the program limber-link: beside this program, else as PATH finds it. [any]
 std::string link_program();
 
+/// Returns the file of a module such as limber-mpi-mpich.so: beside this program, else in lib/limber next to the
+/// installed one; empty if there is none. [any]
+std::string module_file(std::string_view name);
+
 /// Returns the folder of the shaders, which may be edited while the program runs; empty if there is none. [any]
 std::string shader_dir();
 

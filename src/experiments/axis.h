@@ -17,6 +17,8 @@ struct ParameterInfo {
   double initial = 0;
   std::vector<std::string> choices;  ///< Words of a choice, whose value is the index; empty: a number.
   bool whole = false;                ///< A boolean or a choice: only whole numbers are values.
+
+  bool operator==(const ParameterInfo&) const = default;
 };
 
 /// `--param NAME=VALUES` as typed: MIN:MAX, MIN:MAX:STEP, MIN:MAX/N, or a list of numbers or words.

@@ -116,13 +116,8 @@ Result<void> Dispatcher::handle(const Workers::Event& event) {
   if (!event.line) return lose(event.worker, "the simulation crashed");
   std::optional<Answer> answer = decode_answer(*event.line);
   if (!answer) return lose(event.worker, "the simulation returned an invalid line");
-  if (const auto* fault = std::get_if<WorkerFault>(&*answer)) return Error{fault->text};
-  if (auto* scene = std::get_if<SceneInfo>(&*answer)) {
-    scene_ = std::move(*scene);
-    state.failed_starts = 0;
-    if (state.phase == Phase::setting_up) enter(event.worker, Phase::idle);
-    return {};
-  }
+  if (const auto* fault = std::get_if<WorkerFault>(&*answer)) return error_of(event.worker, fault->text);
+  if (auto* scene = std::get_if<SceneInfo>(&*answer)) return handle_scene(event.worker, std::move(*scene));
   auto& outcome = std::get<Outcome>(*answer);
   if (state.phase != Phase::busy) return {};  // of an abandoned evaluation
   Task& task = tasks_[state.task];
@@ -130,6 +125,23 @@ Result<void> Dispatcher::handle(const Workers::Event& event) {
   if (!task.outcome) return lose(event.worker, "the simulation returned another evaluation");
   enter(event.worker, Phase::idle);
   return {};
+}
+
+// Evaluations of different scenes would be one result.
+Result<void> Dispatcher::handle_scene(std::size_t worker, SceneInfo scene) {
+  if (scene_ && *scene_ != scene)
+    return error_of(worker,
+                    "the scene is not the one that was read at the beginning, so it was changed, or other "
+                    "nodes have another one; copy it to all nodes, and start again");
+  scene_ = std::move(scene);
+  states_[worker].failed_starts = 0;
+  if (states_[worker].phase == Phase::setting_up) enter(worker, Phase::idle);
+  return {};
+}
+
+Error Dispatcher::error_of(std::size_t worker, const std::string& text) const {
+  const std::string place = workers_.place(worker);
+  return Error{place.empty() ? text : fmt::format("{}: {}", place, text)};
 }
 
 // Marks a worker as down. Its evaluation is tried again, and fails after kTries.
@@ -140,8 +152,8 @@ Result<void> Dispatcher::lose(std::size_t worker, const std::string& reason) {
   options_.on_restart();
   if (before != Phase::busy) {
     if (++state.failed_starts < (scene_ ? kMaxFailedRestarts : kMaxFailedStarts)) return {};
-    return Error{fmt::format("{} {} times before it could begin; check the scene with limber play", reason,
-                             state.failed_starts)};
+    return error_of(worker, fmt::format("{} {} times before it could begin; check the scene with limber play", reason,
+                                        state.failed_starts));
   }
   Task& task = tasks_[state.task];
   if (task.tries < kTries) {

@@ -19,7 +19,7 @@
 namespace limber::experiments {
 
 /// The transport: starts workers, which are numbered from 0, and exchanges lines of text with them. app/experiments
-/// implements it with child processes.
+/// implements it with child processes, RankWorkers (ranks.h) with the ranks of an MPI job.
 class Workers {
  public:
   Workers() = default;
@@ -38,7 +38,9 @@ class Workers {
   /// Sends a line. A failure is followed by the event that the worker has ended.
   virtual void send(std::size_t worker, std::string_view line) = 0;
   /// Waits for events, at most for `limit`; returns earlier if a signal arrived.
-  virtual std::vector<Event> wait(std::chrono::milliseconds limit) = 0;
+  virtual std::vector<Event> wait(std::chrono::microseconds limit) = 0;
+  /// Returns where the worker runs, for error messages; empty: here.
+  virtual std::string place(std::size_t /*worker*/) const { return {}; }
 };
 
 class Dispatcher {
@@ -87,6 +89,8 @@ class Dispatcher {
   void give_work(const std::function<std::optional<Evaluation>()>& next);
   std::optional<std::uint64_t> next_task(const std::function<std::optional<Evaluation>()>& next);
   Result<void> handle(const Workers::Event& event);
+  Result<void> handle_scene(std::size_t worker, SceneInfo scene);
+  Error error_of(std::size_t worker, const std::string& text) const;
   Result<void> lose(std::size_t worker, const std::string& reason);
   Result<void> stop_slow_workers();
   Result<void> commit_finished(const std::function<Result<void>(const Evaluation&, const Outcome&)>& commit);

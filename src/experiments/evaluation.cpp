@@ -54,7 +54,7 @@ Json to_json(const SceneInfo& scene) {
   Json results = Json::array();
   for (const ResultInfo& r : scene.results)
     results.push_back({{"name", r.name}, {"min", number(r.min)}, {"max", number(r.max)}, {"cells", r.cells}});
-  return {{"parameters", parameters}, {"results", results}};
+  return {{"parameters", parameters}, {"results", results}, {"hash", scene.hash}};
 }
 
 SceneInfo to_scene(const Json& json) {
@@ -65,6 +65,7 @@ SceneInfo to_scene(const Json& json) {
                                 p.at("whole")});
   for (const Json& r : json.at("results"))
     scene.results.push_back({r.at("name"), to_number(r.at("min")), to_number(r.at("max")), r.at("cells")});
+  scene.hash = json.at("hash");
   return scene;
 }
 

@@ -40,12 +40,17 @@ struct ResultInfo {
   double min = 0;
   double max = 0;
   int cells = 0;  ///< 0: it has no range.
+
+  bool operator==(const ResultInfo&) const = default;
 };
 
 /// The parameters and results that a scene declares.
 struct SceneInfo {
   std::vector<ParameterInfo> parameters;
   std::vector<ResultInfo> results;
+  std::uint64_t hash = 0;  ///< State hash at the beginning, which shows whether two scenes are the same.
+
+  bool operator==(const SceneInfo&) const = default;
 };
 
 /// A failed setup, such as a scene with an error.

@@ -14,83 +14,11 @@
 
 #include <gtest/gtest.h>
 
-#include "base/random.h"
+#include "experiments/fake_workers.h"
 
 namespace limber::experiments::test {
 namespace {
 
-/// Workers without processes, in simulated time. `fate` decides what happens to an evaluation.
-class FakeWorkers final : public Workers {
- public:
-  enum class Fate : std::uint8_t { answer, crash, hang };
-
-  explicit FakeWorkers(std::size_t count) : pending_(count), alive_(count, false) {}
-
-  std::size_t count() const override { return pending_.size(); }
-  Result<void> start(std::size_t worker) override {
-    starts++;
-    alive_[worker] = true;
-    pending_[worker].clear();
-    return {};
-  }
-  void send(std::size_t worker, std::string_view line) override {
-    const std::optional<Request> request = decode_request(line);
-    ASSERT_TRUE(request.has_value()) << line;
-    if (std::holds_alternative<WorkerSetup>(*request)) {
-      if (crash_at_setup) return add(worker, {}, 1);
-      return add(worker, fault.empty() ? encode(Answer(scene)) : encode(Answer(WorkerFault{fault})), 1);
-    }
-    const auto& evaluation = std::get<Evaluation>(*request);
-    const int tried = tries[evaluation.number]++;
-    const double duration = random_.uniform(0.01, 1);
-    switch (fate(evaluation.number, tried)) {
-      case Fate::answer:
-        return add(worker, encode(Answer(Outcome{evaluation.number, {value(evaluation)}, evaluation.number + 1, ""})),
-                   duration);
-      case Fate::crash:
-        return add(worker, {}, duration);
-      case Fate::hang:
-        return;
-    }
-  }
-  std::vector<Event> wait(std::chrono::milliseconds limit) override {
-    std::optional<std::size_t> first;
-    for (std::size_t i = 0; i < pending_.size(); i++) {
-      if (!pending_[i].empty() && (!first || pending_[i].front().at < pending_[*first].front().at)) first = i;
-    }
-    const double end = now + std::chrono::duration<double>(limit).count();
-    if (!first || pending_[*first].front().at > end) {
-      now = end;
-      return {};
-    }
-    const Pending next = pending_[*first].front();
-    pending_[*first].erase(pending_[*first].begin());
-    now = std::max(now, next.at);
-    if (!next.line) alive_[*first] = false;
-    return {{*first, next.line}};
-  }
-  static double value(const Evaluation& evaluation) { return 10 * evaluation.values.at(0) + 1; }
-
-  std::function<Fate(std::uint64_t number, int tried)> fate = [](auto, auto) { return Fate::answer; };
-  SceneInfo scene{{{"rate", 0, 1, 0.5, {}, false}}, {{"distance", 0, 0, 0}}};
-  std::string fault;
-  bool crash_at_setup = false;
-  double now = 0;
-  int starts = 0;
-  std::map<std::uint64_t, int> tries;
-
- private:
-  struct Pending {
-    double at;
-    std::optional<std::string> line;
-  };
-  void add(std::size_t worker, std::optional<std::string> line, double duration) {
-    pending_[worker].push_back({now + duration, std::move(line)});
-  }
-  std::vector<std::vector<Pending>> pending_;
-  std::vector<bool> alive_;
-  Random random_{5, "durations"};
-};
 using Fate = FakeWorkers::Fate;
 
 struct Rig {
@@ -125,16 +53,6 @@ struct Rig {
   std::uint64_t next = 0;
   std::vector<Outcome> outcomes;
 };
-
-void expect_all(const std::vector<Outcome>& outcomes, std::uint64_t count) {
-  ASSERT_EQ(outcomes.size(), count);
-  for (std::uint64_t i = 0; i < count; i++) {
-    EXPECT_EQ(outcomes[i].number, i);
-    EXPECT_EQ(outcomes[i].error, "");
-    ASSERT_EQ(outcomes[i].results.size(), 1u);
-    EXPECT_EQ(outcomes[i].results[0], 10 * (static_cast<double>(i) / 8) + 1);
-  }
-}
 
 TEST(Dispatcher, CommitsInOrderForAnyNumberOfWorkers) {
   for (const std::size_t count : {1u, 2u, 3u, 8u, 64u}) {
@@ -183,9 +101,9 @@ TEST(Dispatcher, GivesUpAfterThreeTries) {
   EXPECT_EQ(rig.outcomes[3].error, "the simulation crashed, 3 times");
   EXPECT_EQ(rig.outcomes[5].error, "the simulation took longer than 20 s, 3 times");
   EXPECT_EQ(rig.outcomes[9].error, "");
-  EXPECT_EQ(rig.workers.tries[3], Dispatcher::kTries);
-  EXPECT_EQ(rig.workers.tries[5], Dispatcher::kTries);
-  EXPECT_EQ(rig.workers.tries[4], 1);
+  EXPECT_EQ((*rig.workers.tries)[3], Dispatcher::kTries);
+  EXPECT_EQ((*rig.workers.tries)[5], Dispatcher::kTries);
+  EXPECT_EQ((*rig.workers.tries)[4], 1);
 }
 
 TEST(Dispatcher, LimitsHowFarOthersAreAhead) {
@@ -220,6 +138,16 @@ TEST(Dispatcher, ReportsTheErrorOfTheScene) {
   const Result<SceneInfo> scene = rig.dispatcher.describe({"scene.lua", 10, {}});
   ASSERT_FALSE(scene.ok());
   EXPECT_EQ(scene.error(), "scene.lua:3: there is no global 'x'");
+}
+
+TEST(Dispatcher, RejectsAnotherScene) {
+  Rig rig(2);
+  ASSERT_TRUE(rig.dispatcher.describe({"scene.lua", 10, {}}).ok());
+  rig.workers.scene.hash++;
+  const auto end = rig.run(10);
+  ASSERT_FALSE(end.ok());
+  EXPECT_NE(end.error().find("the scene is not the one that was read at the beginning"), std::string::npos);
+  EXPECT_TRUE(rig.outcomes.empty());
 }
 
 TEST(Dispatcher, EndsIfWorkersNeverBegin) {

@@ -19,6 +19,7 @@ constexpr const char* kSweepExamples =
     "  limber sweep my.lua --param rate=0.1:1/10    ten values from 0.1 to 1; the table goes to stdout\n"
     "  limber sweep my.lua --samples 200 --out all.csv  200 points within the ranges of all parameters\n"
     "  limber sweep my.lua --samples 200 --out all.csv --resume  continue after Ctrl+C or a crash\n"
+    "  mpirun -n 64 limber sweep my.lua --samples 9999 --out all.csv  64 processes, on several machines\n"
     "A row has the values, the seed, the results, the state hash and the command that plays it. Neither the\n"
     "order nor the numbers depend on --jobs. An evaluation that fails has the reason in the column error.\n"
     "Exit codes: 1 the scene has an error, all evaluations failed, or Ctrl+C; 3 the table can't be written.";
@@ -31,6 +32,7 @@ constexpr const char* kEvolveExamples =
     "  limber evolve my.lua --maximize distance --minimize effort\n"
     "                                               NSGA-II: the best compromises of both\n"
     "  limber evolve my.lua --maximize distance --resume  continue after Ctrl+C or a crash\n"
+    "  mpirun -n 64 limber evolve my.lua --maximize distance  64 processes, on several machines\n"
     "  limber evolve --play my_evolve               play the best; others are presets to recall and morph\n"
     "  limber evolve --play my_evolve cell_3_7 --fullscreen  another elite, with options of play\n"
     "The file elites.csv in the folder has a row for each elite, with the command that plays it.\n"
@@ -63,6 +65,10 @@ void add_common(CLI::App& app, ExperimentOptions& o, const char* params) {
   app.add_option("--jobs", o.jobs, "Number of processes; default: one per core. The result is the same for any.")
       ->type_name("N")
       ->check(CLI::Range(1, 1024));
+  app.add_option("--mpi", o.mpi,
+                 "The MPI whose mpirun or srun started this: auto (default), openmpi, mpich; off: run separately.")
+      ->type_name("auto|openmpi|mpich|off")
+      ->check(CLI::IsMember({"auto", "openmpi", "mpich", "off"}));
   app.add_option("--time-limit", o.time_limit,
                  "Seconds of real time after which an evaluation is stopped; tried three times; default 300.")
       ->type_name("S")

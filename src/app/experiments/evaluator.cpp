@@ -77,6 +77,7 @@ Result<experiments::SceneInfo> Evaluator::set_up(experiments::WorkerSetup setup)
   scene_.parameters = parameters_of(engine);
   for (const script::SceneResult& result : engine.scene()->output().results)
     scene_.results.push_back({result.name, result.min, result.max, result.cells});
+  scene_.hash = engine.state_hash();
   for (const std::string& name : setup_.parameters) {
     const auto found = std::ranges::find(scene_.parameters, name, &ParameterInfo::name);
     if (found == scene_.parameters.end())

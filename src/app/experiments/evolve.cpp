@@ -15,6 +15,7 @@
 #include "app/experiments/archive.h"
 #include "app/experiments/evolve_play.h"
 #include "app/experiments/experiment.h"
+#include "app/experiments/mpi_job.h"
 #include "app/paths.h"
 #include "app/progress.h"
 #include "base/build_info.h"
@@ -337,20 +338,24 @@ int Evolution::run() {
   return report(canceled);
 }
 
+int run_evolve(const EvolveCommand& command, experiments::Workers* ranks) {
+  if (command.common.scene.empty())
+    return fail(kUsageError, "name the scene: limber evolve SCENE.lua --maximize RESULT");
+  if (command.maximize.empty() && command.minimize.empty())
+    return fail(kUsageError, "name the result to search for: --maximize RESULT or --minimize RESULT");
+  Experiment experiment(command.common, ranks);
+  if (const std::optional<ExperimentFault> fault = experiment.open()) return fail(fault->code, fault->text);
+  Evolution evolution(command, experiment);
+  if (const Result<void> prepared = evolution.prepare(); !prepared) return fail(kUsageError, prepared.error());
+  return evolution.run();
+}
+
 }  // namespace
 
 int evolve_command(const EvolveCommand& command) {
   system::block_signals();
   start_output(OutputMode::batch);
-  if (command.common.scene.empty())
-    return fail(kUsageError, "name the scene: limber evolve SCENE.lua --maximize RESULT");
-  if (command.maximize.empty() && command.minimize.empty())
-    return fail(kUsageError, "name the result to search for: --maximize RESULT or --minimize RESULT");
-  Experiment experiment(command.common);
-  if (const std::optional<ExperimentFault> fault = experiment.open()) return fail(fault->code, fault->text);
-  Evolution evolution(command, experiment);
-  if (const Result<void> prepared = evolution.prepare(); !prepared) return fail(kUsageError, prepared.error());
-  return evolution.run();
+  return run_in_job(command.common, [&](experiments::Workers* ranks) { return run_evolve(command, ranks); });
 }
 
 }  // namespace limber::app

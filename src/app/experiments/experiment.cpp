@@ -40,17 +40,9 @@ std::optional<ExperimentFault> Experiment::open() {
                                    : fmt::format("{} is not a scene; name a .lua file", printable(options_.scene))};
   const std::string program = system::executable_path();
   if (program.empty()) return ExperimentFault{kMachineError, "the path of this program is unknown"};
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  const int jobs = options_.jobs > 0 ? options_.jobs : cores;
-  workers_ = std::make_unique<ProcessWorkers>(static_cast<std::size_t>(jobs),
-                                              std::vector<std::string>{program, std::string(kWorkerArgument)});
-  experiments::Dispatcher::Options options;
-  options.time_limit = options_.time_limit;
-  options.canceled = [this] { return canceled(); };
-  options.on_restart = [this] {
-    if (++restarts_ == 1) print_notice("a simulation ended unexpectedly; it is restarted (reported once)");
-  };
-  dispatcher_ = std::make_unique<experiments::Dispatcher>(*workers_, std::move(options));
+  if (ranks_ != nullptr && options_.jobs > 0)
+    return ExperimentFault{kUsageError, "--jobs: MPI determines the number of processes; use mpirun -n, or --mpi off"};
+  create_dispatcher(program);
   setup_ = {absolute_path(scene), options_.duration, {}};
   Result<experiments::SceneInfo> info = dispatcher_->describe(setup_);
   if (!info) return ExperimentFault{kInputError, info.error()};
@@ -59,6 +51,25 @@ std::optional<ExperimentFault> Experiment::open() {
   if (!axes) return ExperimentFault{kUsageError, axes.error()};
   axes_ = std::move(*axes);
   return {};
+}
+
+experiments::Workers& Experiment::workers(const std::string& program) {
+  if (ranks_ != nullptr) return *ranks_;
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int jobs = options_.jobs > 0 ? options_.jobs : cores;
+  processes_ = std::make_unique<ProcessWorkers>(static_cast<std::size_t>(jobs),
+                                                std::vector<std::string>{program, std::string(kWorkerArgument)});
+  return *processes_;
+}
+
+void Experiment::create_dispatcher(const std::string& program) {
+  experiments::Dispatcher::Options options;
+  options.time_limit = options_.time_limit;
+  options.canceled = [this] { return canceled(); };
+  options.on_restart = [this] {
+    if (++restarts_ == 1) print_notice("a simulation ended unexpectedly; it is restarted (reported once)");
+  };
+  dispatcher_ = std::make_unique<experiments::Dispatcher>(workers(program), std::move(options));
 }
 
 void Experiment::begin() {

@@ -27,7 +27,8 @@ std::string command_that_plays(const std::string& scene, const std::vector<exper
 
 class Experiment {
  public:
-  explicit Experiment(const ExperimentOptions& options) : options_(options) {}
+  /// `ranks`: the workers of an MPI job; null: child processes of this one.
+  Experiment(const ExperimentOptions& options, experiments::Workers* ranks) : options_(options), ranks_(ranks) {}
 
   /// Finds the scene, parses the options and reads the scene's declarations in a worker.
   std::optional<ExperimentFault> open();
@@ -50,8 +51,12 @@ class Experiment {
   }
 
  private:
+  experiments::Workers& workers(const std::string& program);
+  void create_dispatcher(const std::string& program);
+
   ExperimentOptions options_;
-  std::unique_ptr<ProcessWorkers> workers_;
+  experiments::Workers* ranks_;
+  std::unique_ptr<ProcessWorkers> processes_;
   std::unique_ptr<experiments::Dispatcher> dispatcher_;
   experiments::WorkerSetup setup_;
   experiments::SceneInfo scene_;

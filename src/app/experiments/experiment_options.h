@@ -15,8 +15,9 @@ struct ExperimentOptions {
   std::string seeds = "1";
   double duration = 10;  ///< Simulated seconds of each evaluation.
   std::string out;
-  int jobs = 0;             ///< Number of processes; 0: one per core.
-  double time_limit = 300;  ///< Real time of an evaluation, s.
+  int jobs = 0;              ///< Number of processes; 0: one per core.
+  std::string mpi = "auto";  ///< auto, openmpi, mpich, off.
+  double time_limit = 300;   ///< Real time of an evaluation, s.
   bool resume = false;
   bool overwrite = false;
 };

@@ -39,7 +39,7 @@ void ProcessWorkers::send(std::size_t worker, std::string_view line) {
   if (workers_[worker].process != nullptr) (void)workers_[worker].process->write(fmt::format("{}\n", line));
 }
 
-std::vector<experiments::Workers::Event> ProcessWorkers::wait(std::chrono::milliseconds limit) {
+std::vector<experiments::Workers::Event> ProcessWorkers::wait(std::chrono::microseconds limit) {
   std::vector<system::PollEntry> entries(workers_.size());
   for (std::size_t i = 0; i < workers_.size(); i++) {
     if (workers_[i].process != nullptr) entries[i].fd = workers_[i].process->output();

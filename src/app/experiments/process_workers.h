@@ -20,7 +20,7 @@ class ProcessWorkers final : public experiments::Workers {
   std::size_t count() const override { return workers_.size(); }
   Result<void> start(std::size_t worker) override;
   void send(std::size_t worker, std::string_view line) override;
-  std::vector<Event> wait(std::chrono::milliseconds limit) override;
+  std::vector<Event> wait(std::chrono::microseconds limit) override;
 
  private:
   struct Worker {

@@ -11,6 +11,7 @@
 
 #include "app/exit_code.h"
 #include "app/experiments/experiment.h"
+#include "app/experiments/mpi_job.h"
 #include "app/progress.h"
 #include "base/log/output.h"
 #include "base/plural.h"
@@ -203,14 +204,10 @@ int Sweep::run() {
   return report(*ran == experiments::Dispatcher::End::canceled);
 }
 
-}  // namespace
-
-int sweep_command(const SweepCommand& command) {
-  system::block_signals();
-  start_output(OutputMode::batch);
+int run_sweep(const SweepCommand& command, experiments::Workers* ranks) {
   if (command.common.resume && command.common.out.empty())
     return fail(kUsageError, "--resume continues the table of --out; name it");
-  Experiment experiment(command.common);
+  Experiment experiment(command.common, ranks);
   if (const std::optional<ExperimentFault> fault = experiment.open()) return fail(fault->code, fault->text);
   const DesignKind kind = design_kind(command);
   if (kind == DesignKind::grid && command.samples > 0)
@@ -221,6 +218,14 @@ int sweep_command(const SweepCommand& command) {
     return fail(kUsageError,
                 fmt::format("more than {} evaluations; use fewer values, samples or seeds", Design::kMaxPoints));
   return Sweep(command, experiment, std::move(*design)).run();
+}
+
+}  // namespace
+
+int sweep_command(const SweepCommand& command) {
+  system::block_signals();
+  start_output(OutputMode::batch);
+  return run_in_job(command.common, [&](experiments::Workers* ranks) { return run_sweep(command, ranks); });
 }
 
 }  // namespace limber::app

@@ -75,4 +75,13 @@ void* find_symbol(const char* name) {
 
 bool load_library(const char* file) { return dlopen(file, RTLD_LAZY | RTLD_LOCAL) != nullptr; }
 
+void* load_function(const std::string& file, const char* name, std::string& reason) {
+  void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const found = library == nullptr ? nullptr : dlsym(library, name);
+  if (found != nullptr) return found;
+  const char* const fault = dlerror();
+  reason = fault == nullptr ? "unknown error" : fault;
+  return nullptr;
+}
+
 }  // namespace limber::system

@@ -40,5 +40,7 @@ void* find_symbol(const char* name);
 std::string library_path(const void* address);
 /// Loads a shared library such as "libEGL.so.1" until the process exits. False on error.
 bool load_library(const char* file);
+/// Loads a shared library until the process exits, and returns its function; null on error, with the reason.
+void* load_function(const std::string& file, const char* name, std::string& reason);
 
 }  // namespace limber::system
