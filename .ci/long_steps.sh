@@ -72,6 +72,8 @@ long_soak() { tests_at_length 'Soak.*'; }
 long_crash() { tests_at_length 'LongCrash.*'; }
 # --long evolve: a search with 150 killed child processes and 50 killed jobs
 long_evolve() { tests_at_length 'LongEvolve.*'; }
+# --long mocap: a million broken frames of motion capture against the limits of lights and motors
+long_mocap() { tests_at_length 'LongMocap.*'; }
 # --long takes: takes of ten minutes with random input, and of many random seeds
 long_takes() { tests_at_length 'LongTake.*'; }
 # --long lua_difference: a million random Lua programs, compiled against interpreted (LIMBER_LUA_PROGRAMS)
