@@ -38,7 +38,7 @@ arm:add_behavior("mocap_target", "copy", {
 local spots = {}
 for i = 1, 16 do
   spots[i] = sim:add_fixture("spot" .. i, {
-    profile = "moving_spot", universe = 1 + i // 9, address = 1 + 30 * ((i - 1) % 8), aim = "point",
+    profile = "moving_spot", universe = i < 9 and 1 or 2, address = 1 + 30 * ((i - 1) % 8), aim = "point",
     position = vec3(i - 8, 3, 4),
   })
 end
