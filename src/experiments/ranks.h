@@ -83,7 +83,8 @@ class RankWorker {
  public:
   RankWorker(RankMessages& messages, Workers& local, const std::string& program, const std::string& host);
 
-  /// Handles what has arrived, then waits a short time for the worker. False: rank 0 has ended the rank.
+  /// Handles the messages that have arrived, then waits briefly for an answer of the worker. Returns false once rank 0
+  /// has told this rank to end.
   bool step();
 
  private:

@@ -1,5 +1,5 @@
-// A million frames of motion capture, lost, late, in bursts, reordered and wrong: no fixture and no motor exceeds its
-// limits.
+// A million frames of motion capture, lost, late, in bursts, reordered and wrong: no moving head exceeds its speed and
+// acceleration, and the target of a motor its speed.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -49,6 +49,12 @@ TEST(PanelMocap, PlaysAndScrubsAFile) {
   EXPECT_NEAR(fixture.read("/physics/mocap/film/time"), half, 0.1 * half);
 }
 
+TEST(PanelMocap, ShowsNamesAsTheSceneWritesThem) {
+  PanelFixture fixture(R"(sim:add_mocap("my dancer", { source = "osc" }))", 1280, 720);
+  fixture.click("tab:mocap");
+  EXPECT_EQ(DrawnText().in(fixture.rect_of("mocap:/physics/mocap/my%20dancer")), "my dancer waits for frames");
+}
+
 TEST(PanelMocap, ASceneWithoutSourcesSaysHowToAddOne) {
   PanelFixture fixture("", 1280, 720);
   fixture.click("tab:mocap");

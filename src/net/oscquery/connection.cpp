@@ -156,10 +156,6 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::size_t response_bytes_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 system::IpAddress address_of(const boost::asio::ip::address& address) {
   if (address.is_v4()) return address.to_v4().to_uint();
   system::IpAddress ip(0, 0, static_cast<std::uint32_t>(address.to_v6().scope_id()));

@@ -132,8 +132,7 @@ struct UdpSender::State {
     if (send_buffer > 0) set_send_buffer(socket->fd(), send_buffer);
     if (receive_buffer > 0) set_receive_buffer(socket->fd(), receive_buffer);
     allow_broadcast(socket->fd());
-    const int on = 1;
-    setsockopt(socket->fd(), is_v6 ? IPPROTO_IPV6 : IPPROTO_IP, is_v6 ? IPV6_RECVERR : IP_RECVERR, &on, sizeof on);
+    enable(socket->fd(), is_v6 ? IPPROTO_IPV6 : IPPROTO_IP, is_v6 ? IPV6_RECVERR : IP_RECVERR);
     return socket;
   }
 

@@ -43,10 +43,10 @@ class MocapPanel : public Panel {
     if (context.value_snapshot == nullptr) return;
     if (!ImGui::BeginChild("##mocap", {}, false, ImGuiWindowFlags_NavFlattened)) return ImGui::EndChild();
     bool any = false;
-    for_each(context, kMocap, [&](std::uint32_t, const std::string& path) {
+    for_each(context, kMocap, [&](std::uint32_t node, const std::string& path) {
       any = true;
       ImGui::PushID(path.c_str());
-      draw_source(context, path);
+      draw_source(context, name_of(context, node), path);
       ImGui::PopID();
     });
     if (!any) ImGui::TextDisabled("No sources: sim:add_mocap adds one");
@@ -87,14 +87,13 @@ class MocapPanel : public Panel {
     return {ThemeColor::green, context.number(path + "/duration") > 0 ? "file" : "live"};
   }
 
-  static void draw_source(GuiContext& context, const std::string& path) {
+  static void draw_source(GuiContext& context, const std::string& name, const std::string& path) {
     if (const auto active = context.find(path + "/active")) {
       property_widget(context, *active, ImGui::GetFrameHeight());
       property_menu(context, *active);
       ImGui::SameLine();
     }
     ImGui::AlignTextToFramePadding();
-    const std::string name = path.substr(path.rfind('/') + 1);
     draw_line(context, path, "mocap:" + path, name, state_of(context, path),
               fmt::format("{}: {:.0f} messages, mean speed {:.2f} m/s, {:.0f} joints on the floor\nClick for its place "
                           "on stage and its limits",
