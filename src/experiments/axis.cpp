@@ -121,6 +121,12 @@ double Axis::at(double position) const {
   return std::min(min + position * (max - min), max);
 }
 
+double Axis::position_of(double value) const {
+  if (!listed) return max > min ? std::clamp((value - min) / (max - min), 0.0, 1.0) : 0;
+  const auto nearest = std::ranges::min_element(values, {}, [&](double each) { return std::abs(each - value); });
+  return (static_cast<double>(nearest - values.begin()) + 0.5) / static_cast<double>(values.size());
+}
+
 std::string Axis::text(double value) const {
   if (choices.empty()) return number_text(value);
   return choices[std::min(static_cast<std::size_t>(std::max(value, 0.0)), choices.size() - 1)];

@@ -47,6 +47,8 @@ struct Axis {
 
   /// Maps a position 0 .. 1 within the range to a value.
   double at(double position) const;
+  /// Returns the position that at() maps to the value, or to the nearest one.
+  double position_of(double value) const;
   /// Returns a value as text for people and for `--param`: a number or a word.
   std::string text(double value) const;
 };

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_impl_opengl3.h>
 
 #include "base/log/log.h"
 #include "ui/panel/imgui_versions.h"
@@ -28,13 +27,6 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFla
 
 // windows above the panels
 constexpr ImGuiWindowFlags kOverlay = kFixed & ~ImGuiWindowFlags_NoBringToFrontOnFocus;
-
-void set_clipboard(void* options, const char* text) { static_cast<const GuiOptions*>(options)->copy(text); }
-const char* get_clipboard(void* options) {
-  static std::string pasted;
-  pasted = static_cast<const GuiOptions*>(options)->paste();
-  return pasted.c_str();
-}
 
 constexpr float kHelpMargins = 12;  // pixels, of both sides together
 
@@ -121,49 +113,16 @@ void perform_in_context(HotkeyAction action, GuiContext& context) {
 
 }  // namespace
 
-Gui::Gui(engine::EngineLink& link, GuiOptions options)
-    : options_(std::move(options)), imgui_context_(ImGui::CreateContext()), context_(link) {
-  ImGui::SetCurrentContext(imgui_context_);
-  ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  io.LogFilename = nullptr;
-  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
-  io.ConfigInputTextCursorBlink = options_.draws;
-  io.ClipboardUserData = &options_;
-  io.SetClipboardTextFn = set_clipboard;
-  io.GetClipboardTextFn = get_clipboard;
-  io.MousePos = {-1, -1};
-  imgui::start_input(io);
-  files_ = find_fonts(options_.font_root);
-  for (const std::string& warning : files_.warnings) log_warning("{}", warning);
+Gui::Gui(engine::EngineLink& link, GuiOptions options) : options_(std::move(options)), host_(options_), context_(link) {
   context_.settings = options_.settings;
   hotkeys_ = Hotkeys(context_.settings.keys);
   for (const std::string& error : hotkeys_.errors()) log_warning("panel settings: {}", error);
   context_.copy = options_.copy;
   context_.options = &options_;
   for (const PanelType& type : panel_types()) panels_.push_back({type, type.make()});
-  if (options_.draws && !ImGui_ImplOpenGL3_Init(options_.glsl.c_str())) {
-    log_error("the panel is not available: can't load libGL.so.1. On Debian: apt-get install libgl1");
-    options_.draws = false;
-  }
 }
 
-Gui::~Gui() {
-  ImGui::SetCurrentContext(imgui_context_);
-  if (options_.draws) ImGui_ImplOpenGL3_Shutdown();
-  ImGui::DestroyContext(imgui_context_);
-}
-
-void Gui::update_fonts(const GuiFrame& frame) {
-  const double scale = std::clamp(frame.display_scale, 0.5, 4.0);
-  const double pixels = std::floor(context_.settings.text_size * scale);
-  if (pixels == font_pixels_ && !std::exchange(characters_changed_, false)) return;
-  font_pixels_ = pixels;
-  context_.scale = pixels / 16;
-  context_.fonts = load_fonts(files_, pixels, extra_characters_);
-  apply_theme(context_.scale);
-  imgui::publish_fonts(options_.draws, fonts_drawn_);
-}
+Gui::~Gui() = default;
 
 // Names may contain characters that both fonts lack. Only these are loaded from the fallback font, which has thousands
 // of glyphs.
@@ -173,7 +132,7 @@ void Gui::collect_name_characters() {
   const bool had_fallback = !extra_characters_.empty();
   for (std::uint32_t node = 0; node < characters_tree_->nodes().size(); node++)
     characters_changed_ = collect_characters(characters_tree_->name(node), extra_characters_) || characters_changed_;
-  if (!characters_changed_ || !files_.fallback.empty()) return;
+  if (!characters_changed_ || host_.has_fallback_font()) return;
   characters_changed_ = false;
   if (!had_fallback)
     log_warning(
@@ -182,17 +141,10 @@ void Gui::collect_name_characters() {
 }
 
 void Gui::frame(const GuiFrame& frame) {
-  ImGui::SetCurrentContext(imgui_context_);
-  ImGuiIO& io = ImGui::GetIO();
-  update_fonts(frame);
-  io.DisplaySize = {static_cast<float>(frame.width), static_cast<float>(frame.height)};
-  io.DeltaTime = static_cast<float>(std::clamp(frame.clock - last_clock_, 1e-4, 0.5));
-  last_clock_ = frame.clock;
-  if (options_.draws) {
-    ImGui_ImplOpenGL3_NewFrame();
-    fonts_drawn_ = true;
-  }
-  const std::vector<KeyPress> keys = input_.next_frame();
+  const std::vector<KeyPress> keys = host_.begin_frame(frame, context_.settings.text_size, extra_characters_,
+                                                       std::exchange(characters_changed_, false));
+  context_.fonts = host_.fonts();
+  context_.scale = host_.scale();
   context_.begin_frame(frame.clock);
   collect_name_characters();
   context_.names.clear();
@@ -212,13 +164,8 @@ void Gui::frame(const GuiFrame& frame) {
   ImGui::Render();
 }
 
-void Gui::render() {
-  ImGui::SetCurrentContext(imgui_context_);
-  if (options_.draws) ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-}
-
 bool Gui::wants_mouse() const {
-  ImGui::SetCurrentContext(imgui_context_);
+  host_.make_current();
   return ImGui::GetIO().WantCaptureMouse;
 }
 

@@ -11,37 +11,23 @@
 #include <vector>
 
 #include "ui/panel/gui_context.h"
+#include "ui/panel/gui_host.h"
 #include "ui/panel/hotkeys.h"
 #include "ui/panel/input.h"
 #include "ui/panel/layout.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/stored_views.h"
 
-struct ImGuiContext;
-
 namespace limber::panel {
 
-struct GuiOptions {
-  bool draws = true;                       ///< Draw with OpenGL in the current context; false: nothing is drawn.
-  std::string glsl = "#version 330 core";  ///< First line of the shaders, as required by the context.
-  std::string font_root = "/";             ///< Root of the file system for the search of fonts; tests set another.
+struct GuiOptions : GuiHostOptions {
   GuiSettings settings;
   std::vector<std::string> behavior_types;  ///< Types that can be added.
   std::vector<std::string> history;         ///< Console lines of earlier sessions.
   std::function<void(const std::string&)> store_line = [](const std::string&) {};  ///< Stores a console line.
-  std::function<void(const std::string&)> copy = [](const std::string&) {};        ///< Copies to the clipboard.
-  std::function<std::string()> paste = [] { return std::string(); };
   std::string scene_file;  ///< The file name that is proposed for the scene of the model that plays.
   /// Writes the scene of the model that plays to a file, which may exist only if `overwrite`; empty: no model plays.
   std::function<Result<void>(const std::string& file, bool overwrite)> save_scene;
-};
-
-/// Size, scale and time of a frame.
-struct GuiFrame {
-  double width = 0;  ///< Pixels.
-  double height = 0;
-  double display_scale = 1;  ///< Scale of the display: 2 on high-density screens.
-  double clock = 0;          ///< Monotonic time in s.
 };
 
 class Gui {
@@ -53,13 +39,13 @@ class Gui {
   Gui& operator=(const Gui&) = delete;
 
   /// Queues an input event. [main]
-  void push(const InputEvent& event) { input_.push(event); }
+  void push(const InputEvent& event) { host_.push(event); }
   /// True if queued events are left for further frames.
-  bool has_events() const { return !input_.empty(); }
+  bool has_events() const { return host_.has_events(); }
   /// Runs one frame: reads snapshots, lays out the panels, sends messages. [main]
   void frame(const GuiFrame& frame);
   /// Draws the last frame to the current OpenGL framebuffer. [main]
-  void render();
+  void render() { host_.render(); }
 
   /// True if the mouse is over the panel or drags one of its widgets, so that the view must ignore it.
   bool wants_mouse() const;
@@ -80,7 +66,6 @@ class Gui {
     std::unique_ptr<Panel> panel;
   };
 
-  void update_fonts(const GuiFrame& frame);
   void collect_name_characters();
   void handle_keys(const std::vector<KeyPress>& keys);
   void perform(HotkeyAction action, const KeyPress& press);
@@ -95,24 +80,19 @@ class Gui {
   void draw_notice() const;
 
   GuiOptions options_;
-  ImGuiContext* imgui_context_;
+  GuiHost host_;
   GuiContext context_;
   StoredViews views_;
-  InputQueue input_;
   Layout layout_;
-  FontFiles files_;
   std::vector<DockedPanel> panels_;
   std::array<std::size_t, static_cast<std::size_t>(PanelSlot::count)> selected_{};  // selected tab of each slot
   std::vector<HotkeyAction> actions_;
   Hotkeys hotkeys_;
   KeyLabels key_labels_;
   std::string rebinding_;                // name of the hotkey that is being rebound; empty: none
-  double font_pixels_ = 0;               // current font size
   std::set<unsigned> extra_characters_;  // characters of names that both fonts lack
   std::shared_ptr<const TreeSnapshot> characters_tree_;
   bool characters_changed_ = false;  // extra_characters_ has changed since the fonts were built
-  double last_clock_ = 0;
-  bool fonts_drawn_ = false;
 };
 
 }  // namespace limber::panel
