@@ -1,4 +1,4 @@
-// Declares the options of `limber sweep` and `limber evolve` with CLI11.
+// Declares the options of `limber sweep`, `limber evolve` and `limber breed` with CLI11.
 #include "app/cli/experiment_options.h"
 
 #include <optional>
@@ -39,6 +39,18 @@ constexpr const char* kEvolveExamples =
     "The result doesn't depend on --jobs and interruptions.\n"
     "Exit codes: 1 the scene has an error, nothing was found, or Ctrl+C; 3 the folder can't be written.";
 
+constexpr const char* kBreedExamples =
+    "Nine variations play side by side. Click those you like, then press Mutate or Cross for the next nine.\n"
+    "Keep stores the liked ones as presets of the scene, which limber my.lua recalls.\n"
+    "  limber breed my.lua                          variations of all parameters that have a range\n"
+    "  limber breed my.lua --param rate=0.5:1.5 --param gait=walk,trot  these parameters only\n"
+    "  limber breed my.lua --from calm,wild         begin with these presets of the scene\n"
+    "  limber breed my.lua --presets my_evolve/elites.presets.json --from best_12\n"
+    "                                               begin with the result of a search\n"
+    "Keys: 1 to 9 like, M mutate, C cross, R random, K keep, Ctrl+Z undo, Ctrl+Y redo, Space pause, Home start\n"
+    "again, F11 full screen. Drag and wheel move all cameras.\n"
+    "Exit codes: 1 the scene has an error; 3 there is no display.";
+
 CLI::Validator number_above(double limit, double max, const char* what) {
   return CLI::Validator(
       [limit, max, what](std::string& text) {
@@ -55,8 +67,12 @@ CLI::Validator count() {
   return CLI::Validator([](std::string& text) { return whole_number_fault(text); }, "", "count");
 }
 
+void add_params(CLI::App& app, ExperimentOptions& o, const char* text) {
+  app.add_option("--param", o.params, text)->type_name("NAME=VALUES")->allow_extra_args(false);
+}
+
 void add_common(CLI::App& app, ExperimentOptions& o, const char* params) {
-  app.add_option("--param", o.params, params)->type_name("NAME=VALUES")->allow_extra_args(false);
+  add_params(app, o, params);
   app.add_option("--seeds", o.seeds, "Seeds of each point: FIRST:LAST, or a list such as 1,2,7; default 1.")
       ->type_name("SEEDS");
   app.add_option("--duration", o.duration, "Simulated seconds of an evaluation; default 10.")
@@ -151,6 +167,27 @@ void add_evolve(CLI::App& app, EvolveCommand& command) {
       ->type_name("N")
       ->check(count());
   evolve->add_option("--out", command.common.out, "Folder of the results; default: SCENE_evolve.")->type_name("DIR");
+}
+
+void add_breed(CLI::App& app, BreedCommand& command) {
+  CLI::App* breed = app.add_subcommand("breed", "Select variations of a scene by eye, nine side by side.");
+  breed->footer(kBreedExamples);
+  breed->add_option("scene", command.common.scene, "The scene.")->type_name("SCENE.lua")->required();
+  add_params(*breed, command.common,
+             "Range of a parameter, MIN:MAX, or a list of values; may be repeated. Default: the ranges of all "
+             "parameters.");
+  breed->add_option("--seed", command.common.seeds, "Seed of all variations; default 1.")
+      ->type_name("N")
+      ->check(count());
+  breed->add_option("--search-seed", command.search_seed, "Seed of mutations and crossings; default 1.")
+      ->type_name("N")
+      ->check(count());
+  breed->add_option("--from", command.from, "Presets to begin with, separated by commas; default: the scene's values.")
+      ->type_name("NAME,…")
+      ->delimiter(',');
+  breed->add_option("--presets", command.presets, "File of the presets; default: that of the scene.")
+      ->type_name("FILE.json");
+  add_window_options(*breed, command.display);
 }
 
 }  // namespace limber::app

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "app/breed/variation_worker.h"
 #include "app/cli/command_info.h"
 #include "app/cli/experiment_options.h"
 #include "app/cli/export_options.h"
@@ -36,9 +37,9 @@ namespace limber::app {
 
 namespace {
 
-constexpr std::array<std::string_view, 19> kCommands = {
-    "play",  "sweep",  "evolve", "console", "monitor", "send",    "new",  "inspect",    "describe", "annotate",
-    "bench", "preset", "take",   "export",  "doctor",  "service", "docs", "completion", "man"};
+constexpr std::array<std::string_view, 20> kCommands = {
+    "play",     "sweep", "evolve", "breed", "console", "monitor", "send",    "new",  "inspect",    "describe",
+    "annotate", "bench", "preset", "take",  "export",  "doctor",  "service", "docs", "completion", "man"};
 
 constexpr const char* kAbout =
     "Limber: a live simulator of actuated, articulated bodies, scripted in Lua and controlled over OSC.\n\n"
@@ -51,6 +52,7 @@ constexpr const char* kAbout =
     "  limber monitor                               print the messages it receives and sends\n"
     "  limber export evening.take --format gltf     export recorded motion for other programs\n"
     "  limber sweep my.lua --param rate=0.1:1:0.1   a table of results for ten values\n"
+    "  limber breed my.lua                          nine variations side by side: select by eye\n"
     "  limber new show my_show                      create a folder with an example\n";
 
 constexpr const char* kExitCodes =
@@ -104,6 +106,7 @@ struct CommandLine {
   struct {
     SweepCommand sweep;
     EvolveCommand evolve;
+    BreedCommand breed;
     std::vector<std::string> play_words;  // evolve --play: options of play
   } experiments;
   std::string shell;  // completion
@@ -348,6 +351,7 @@ void add_commands(CLI::App& app, CommandLine& line) {
   add_play_options(*app.add_subcommand("play", "Play a scene (the default command)."), line.play);
   add_sweep(app, line.experiments.sweep);
   add_evolve(app, line.experiments.evolve);
+  add_breed(app, line.experiments.breed);
   add_inspect(app, line.inspect);
   add_describe(app, line);
   add_bench(app, line);
@@ -407,6 +411,7 @@ constexpr CommandRunner kRunners[] = {
     {"play", [](CommandLine& l) { return play_command(l.play); }},
     {"sweep", [](CommandLine& l) { return sweep_command(l.experiments.sweep); }},
     {"evolve", [](CommandLine& l) { return run_evolve(l.experiments.evolve, l.experiments.play_words); }},
+    {"breed", [](CommandLine& l) { return breed_command(l.experiments.breed); }},
     {"inspect", [](CommandLine& l) { return inspect_command(l.inspect); }},
     {"describe",
      [](CommandLine& l) {
@@ -433,6 +438,12 @@ constexpr CommandRunner kRunners[] = {
 
 int run_command(int argc, char** argv) {
   if (argc == 2 && argv[1] == kWorkerArgument) return run_worker();
+  if (argc == 4 && argv[1] == kVariationArgument) {
+    DisplayOptions display;
+    display.gl = argv[2];
+    display.quality = argv[3];
+    return run_variation_worker(display);
+  }
   CLI::App app{kAbout, "limber"};
   CommandLine line;
   add_commands(app, line);

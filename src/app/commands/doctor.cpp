@@ -26,7 +26,7 @@
 #include "engine/output/engine_link.h"
 #include "net/osc/network.h"
 #include "net/oscquery/server.h"
-#include "ui/panel/fonts.h"
+#include "ui/panel/imgui/fonts.h"
 #include "ui/render/gl.h"
 #include "ui/render/offscreen.h"
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/experiments/experiment.h"
+#include "app/experiments/parameter_presets.h"
 #include "base/csv.h"
 #include "base/text.h"
 #include "engine/presets/file.h"
@@ -57,24 +58,6 @@ Axis axis_of(const RecordJson& json) {
   axis.boolean = json.at("boolean");
   if (axis.listed && axis.values.empty()) axis.listed = false;
   return axis;
-}
-
-// the parameters of an elite as a preset of the scene
-std::shared_ptr<const engine::Preset> preset_of(const SearchRecord& record, const Elite& elite, const std::string& name,
-                                                const std::shared_ptr<const engine::PresetSchema>& shared) {
-  engine::PresetLayout layout;
-  engine::PresetSelection selection;
-  const std::vector<double> values = record.values(elite.individual);
-  for (const Axis& axis : record.axes) {
-    const PropertyType type = !axis.choices.empty() ? PropertyType::choice
-                              : axis.boolean        ? PropertyType::boolean
-                                                    : PropertyType::number;
-    layout.add({axis.name, type, 1, axis.choices});
-    selection.include.push_back("/scene/" + axis.name);
-  }
-  engine::PresetBuilder builder;
-  (void)builder.add("/scene", std::move(layout), values);
-  return builder.finish(name, std::move(selection), shared);
 }
 
 // the indices of the elites that become presets, in their order
@@ -217,7 +200,8 @@ Result<void> Archive::write_presets(const SearchRecord& record, const std::vecto
   engine::PresetList list;
   const std::vector<std::string> names = record.names(elites);
   for (const std::size_t i : chosen_for_presets(elites))
-    list.push_back(preset_of(record, elites[i], names[i], list.empty() ? nullptr : list.front()->schema));
+    list.push_back(parameter_preset(record.axes, record.values(elites[i].individual), names[i],
+                                    list.empty() ? nullptr : list.front()->schema));
   if (before) {
     std::ranges::copy_if(before->presets, std::back_inserter(list),
                          [](const auto& preset) { return !is_elite_name(preset->name); });

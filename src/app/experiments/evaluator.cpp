@@ -33,7 +33,8 @@ std::vector<ParameterInfo> parameters_of(engine::Engine& engine) {
   return parameters;
 }
 
-// the first script error that the run has sent
+}  // namespace
+
 std::string script_error(engine::EngineLink& link) {
   std::vector<engine::Outgoing> sent;
   link.output_queue.drain(sent);
@@ -43,8 +44,6 @@ std::string script_error(engine::EngineLink& link) {
   }
   return {};
 }
-
-}  // namespace
 
 engine::EngineOptions Evaluator::options_of(const experiments::Evaluation& evaluation) const {
   engine::EngineOptions options;
@@ -64,6 +63,13 @@ engine::EngineOptions Evaluator::options_of(const experiments::Evaluation& evalu
         {"/scene/" + parameter.name,
          {is_choice && choice < parameter.choices.size() ? Arg::of(parameter.choices[choice]) : Arg::of(value)}});
   }
+  return options;
+}
+
+engine::EngineOptions Evaluator::options_to_play(const experiments::Evaluation& evaluation) const {
+  engine::EngineOptions options = options_of(evaluation);
+  options.fast = false;
+  options.duration.reset();
   return options;
 }
 

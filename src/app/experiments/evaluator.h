@@ -2,6 +2,7 @@
 // [one thread]
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -10,9 +11,13 @@
 
 namespace limber::engine {
 class Engine;
+struct EngineLink;
 }  // namespace limber::engine
 
 namespace limber::app {
+
+/// Takes the messages that a run has sent and returns the first script error among them; empty: there is none.
+std::string script_error(engine::EngineLink& link);
 
 class Evaluator {
  public:
@@ -20,6 +25,9 @@ class Evaluator {
   Result<experiments::SceneInfo> set_up(experiments::WorkerSetup setup);
   /// Simulates. Requires a successful set_up(). The state hash is that of `limber play` with the same values.
   experiments::Outcome evaluate(const experiments::Evaluation& evaluation);
+  /// Returns the options of an engine that plays an evaluation in real time, without an end. Requires a successful
+  /// set_up().
+  engine::EngineOptions options_to_play(const experiments::Evaluation& evaluation) const;
 
  private:
   engine::EngineOptions options_of(const experiments::Evaluation& evaluation) const;

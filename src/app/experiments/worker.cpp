@@ -1,7 +1,6 @@
 // The loop of a worker process.
 #include "app/experiments/worker.h"
 
-#include <array>
 #include <new>
 #include <optional>
 #include <string>
@@ -9,8 +8,8 @@
 
 #include "app/exit_code.h"
 #include "app/experiments/evaluator.h"
+#include "app/experiments/input_lines.h"
 #include "base/log/output.h"
-#include "base/system/file.h"
 #include "base/system/signals.h"
 
 namespace limber::app {
@@ -37,28 +36,6 @@ Answer answer(Evaluator& evaluator, const Request& request) {
     return Outcome{evaluation.number, {}, 0, "not enough memory for the scene"};
   }
 }
-
-// the next line of the standard input; nothing at its end
-class InputLines {
- public:
-  std::optional<std::string> next() {
-    while (true) {
-      if (const std::size_t end = text_.find('\n'); end != std::string::npos) {
-        std::string line = text_.substr(0, end);
-        text_.erase(0, end + 1);
-        return line;
-      }
-      std::array<char, 1 << 14> buffer;
-      const std::ptrdiff_t size = system::read_some(kStandardInput, buffer.data(), buffer.size());
-      if (size <= 0) return {};
-      text_.append(buffer.data(), static_cast<std::size_t>(size));
-    }
-  }
-
- private:
-  static constexpr int kStandardInput = 0;
-  std::string text_;
-};
 
 }  // namespace
 

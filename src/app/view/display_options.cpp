@@ -23,17 +23,36 @@ std::string gl_choice_error(const std::string& text) {
   return fmt::format("'{}' must be auto, core, es or 3.1 ({} sets it, too)", text, kGlVariable);
 }
 
-}  // namespace
-
-void add_display_options(CLI::App& play, DisplayOptions& o) {
-  play.add_flag("--headless", o.headless, "Play without a window.");
-  add_gl_option(play, o.gl);
-  play.add_option(
+void add_picture_options(CLI::App& command, DisplayOptions& o) {
+  add_gl_option(command, o.gl);
+  command
+      .add_option(
           "--quality", o.quality,
           "Rendering quality; default: high, but low in a window with software rendering, OpenGL ES or OpenGL 3.1.")
       ->type_name("low|medium|high")
       ->check(CLI::IsMember({"low", "medium", "high"}));
-  play.add_option("--size", o.size, "Size of the window or image; default 1280x720.")->type_name("WxH");
+  command.add_option("--size", o.size, "Size of the window or image; default 1280x720.")->type_name("WxH");
+}
+
+void add_panel_scale(CLI::App& command, DisplayOptions& o) {
+  command
+      .add_option("--panel-scale", o.panel_scale, "Scale of the panel, multiplied by the screen's scale; default 1.")
+      ->type_name("N")
+      ->check(CLI::Range(0.5, 4.0));
+}
+
+}  // namespace
+
+void add_window_options(CLI::App& command, DisplayOptions& options) {
+  add_picture_options(command, options);
+  command.add_flag_function(
+      "--fullscreen", [&options](std::int64_t) { options.full_screen = true; }, "Fill the monitor.");
+  add_panel_scale(command, options);
+}
+
+void add_display_options(CLI::App& play, DisplayOptions& o) {
+  play.add_flag("--headless", o.headless, "Play without a window.");
+  add_picture_options(play, o);
   // a function, because add_flag() sets an optional even if the flag is not given
   const auto flag = [&play](const char* name, std::optional<bool>& value, bool is, const char* text) {
     play.add_flag_function(
@@ -58,9 +77,7 @@ void add_display_options(CLI::App& play, DisplayOptions& o) {
       ->type_name("N")
       ->check(CLI::Range(0.001, 1000.0));
   play.add_flag("--panel", o.panel, "With --screenshot: draw the panel, too.");
-  play.add_option("--panel-scale", o.panel_scale, "Scale of the panel, multiplied by the screen's scale; default 1.")
-      ->type_name("N")
-      ->check(CLI::Range(0.5, 4.0));
+  add_panel_scale(play, o);
 }
 
 void add_gl_option(CLI::App& command, std::string& choice) {

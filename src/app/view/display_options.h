@@ -33,6 +33,8 @@ struct DisplayOptions {
 };
 
 void add_display_options(CLI::App& play, DisplayOptions& options);
+/// Declares the options of a window that doesn't remember them: OpenGL, quality, size, full screen, the panel's scale.
+void add_window_options(CLI::App& command, DisplayOptions& options);
 /// Declares `--gl`, for each command that draws.
 void add_gl_option(CLI::App& command, std::string& choice);
 

@@ -9,7 +9,7 @@
 
 #include "base/message.h"
 #include "engine/output/value_snapshot.h"
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/input.h"
 #include "ui/panel/spring_marker.h"
 #include "ui/render/pick.h"
 

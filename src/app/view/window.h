@@ -9,7 +9,7 @@
 
 #include "base/result.h"
 #include "ui/panel/hotkeys.h"
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/input.h"
 #include "ui/render/gl.h"
 
 struct GLFWwindow;

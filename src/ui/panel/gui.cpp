@@ -11,7 +11,7 @@
 #include <imgui.h>
 
 #include "base/log/log.h"
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/confirmation.h"
 #include "ui/panel/widgets/number_slider.h"

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "ui/panel/gui_context.h"
-#include "ui/panel/gui_host.h"
 #include "ui/panel/hotkeys.h"
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/gui_host.h"
+#include "ui/panel/imgui/input.h"
 #include "ui/panel/layout.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/stored_views.h"

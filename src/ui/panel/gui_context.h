@@ -13,7 +13,7 @@
 
 #include "engine/output/engine_link.h"
 #include "ui/panel/command_sender.h"
-#include "ui/panel/fonts.h"
+#include "ui/panel/imgui/fonts.h"
 #include "ui/panel/pending_values.h"
 #include "ui/panel/settings.h"
 #include "ui/panel/spring_marker.h"

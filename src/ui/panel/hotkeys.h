@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/input.h"
 
 namespace limber::panel {
 

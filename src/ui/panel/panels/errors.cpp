@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/error_list.h"

@@ -10,7 +10,7 @@
 
 #include "base/text.h"
 #include "engine/presets/morph.h"
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"

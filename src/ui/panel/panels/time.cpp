@@ -5,7 +5,7 @@
 #include <imgui_internal.h>
 
 #include "base/text.h"
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/panel.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/icons.h"

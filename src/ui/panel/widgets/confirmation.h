@@ -2,7 +2,7 @@
 #pragma once
 
 #include "ui/panel/gui_context.h"
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/input.h"
 
 namespace limber::panel {
 

@@ -5,7 +5,7 @@
 #include <imgui.h>
 
 #include "base/vec.h"
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/number_fields.h"
 

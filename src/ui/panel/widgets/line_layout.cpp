@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/text/labels.h"
 #include "ui/panel/widgets/euler_fields.h"
 

@@ -9,7 +9,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/theme.h"
 
 namespace limber::panel {

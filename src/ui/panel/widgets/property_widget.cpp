@@ -15,7 +15,7 @@
 
 #include "base/text.h"
 #include "properties/property_text.h"
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/lua_path.h"
 #include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"

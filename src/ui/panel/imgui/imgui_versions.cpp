@@ -1,5 +1,5 @@
 // The implementations for all supported versions.
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 
 #include <iterator>
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "ui/panel/fonts.h"
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/fonts.h"
+#include "ui/panel/imgui/input.h"
 
 struct ImGuiContext;
 

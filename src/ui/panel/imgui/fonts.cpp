@@ -1,5 +1,5 @@
 // Loads the fonts of fonts-inter and fonts-jetbrains-mono, or DejaVu.
-#include "ui/panel/fonts.h"
+#include "ui/panel/imgui/fonts.h"
 
 #include <cmath>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 
 namespace limber::panel {
 

@@ -1,5 +1,5 @@
 // The context of Dear ImGui: its options, clipboard, fonts and renderer.
-#include "ui/panel/gui_host.h"
+#include "ui/panel/imgui/gui_host.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <imgui_impl_opengl3.h>
 
 #include "base/log/log.h"
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/theme.h"
 
 namespace limber::panel {

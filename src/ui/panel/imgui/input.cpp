@@ -1,9 +1,9 @@
 // Delivers events to Dear ImGui, as many per frame as are unambiguous.
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/input.h"
 
 #include <utility>
 
-#include "ui/panel/imgui_versions.h"
+#include "ui/panel/imgui/imgui_versions.h"
 
 namespace limber::panel {
 

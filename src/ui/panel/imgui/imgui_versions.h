@@ -5,7 +5,7 @@
 
 #include <imgui.h>
 
-#include "ui/panel/input.h"
+#include "ui/panel/imgui/input.h"
 
 struct ImRect;
 

@@ -1,0 +1,57 @@
+// BreedSession: the variations of `limber breed`, their processes and presets, and what the user's actions do. It knows
+// no window. [main]
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/breed/variation_process.h"
+#include "app/experiments/parameter_presets.h"
+#include "experiments/breeding.h"
+#include "ui/panel/breed/breed_gui.h"
+
+namespace limber::app {
+
+class BreedSession {
+ public:
+  static constexpr std::size_t kCount = experiments::Breeding::kCount;
+
+  struct Options {
+    experiments::WorkerSetup setup;    ///< Its parameters are the axes of `breeding`.
+    std::uint64_t seed = 1;            ///< Of all variations.
+    std::vector<std::string> command;  ///< The program of a variation, and its arguments.
+    PresetStore presets;
+  };
+
+  BreedSession(Options options, experiments::Breeding breeding);
+
+  void perform(const panel::BreedAction& action);
+  /// Requests images of this size, unless they are on their way. `mouse`: moves all cameras. `now` in s.
+  void request_images(int width, int height, const MouseMovement& mouse, double now);
+  /// Reads answers until `seconds` have passed, and returns which variations have a new image.
+  std::array<bool, kCount> read_images(double seconds);
+
+  const render::Pixels& image(std::size_t variation) const { return processes_[variation].image(); }
+  /// What the window shows. The textures are left to it.
+  const panel::BreedView& view();
+  /// Shows a text.
+  void notify(std::string text, bool failed);
+
+ private:
+  void play_all();
+  void keep(const std::string& name);
+  bool operate(const panel::BreedAction& action);
+
+  Options options_;
+  experiments::Breeding breeding_;
+  std::vector<VariationProcess> processes_;
+  std::uint64_t runs_ = 0;                   // number of the last evaluation
+  std::array<MouseMovement, kCount> mouse_;  // not sent yet
+  panel::BreedView view_;
+  std::vector<std::pair<experiments::Breeding::Vector, std::string>> kept_;  // individuals and their presets
+};
+
+}  // namespace limber::app

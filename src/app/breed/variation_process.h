@@ -1,0 +1,61 @@
+// VariationProcess: a variation of a scene that plays in a child process. A process that ends or no longer answers is
+// started again. [one thread]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/breed/variation_protocol.h"
+#include "base/result.h"
+#include "base/system/child_process.h"
+#include "experiments/evaluation.h"
+#include "ui/render/pixels.h"
+
+namespace limber::app {
+
+class VariationProcess {
+ public:
+  static constexpr double kAnswerLimit = 30;  ///< s after which a process counts as stuck.
+  static constexpr int kMaxStarts = 3;        ///< Starts for one run.
+
+  /// `command`: the program and its arguments. `setup`: what all runs share.
+  VariationProcess(std::vector<std::string> command, experiments::WorkerSetup setup)
+      : command_(std::move(command)), setup_(std::move(setup)) {}
+
+  /// Ends the run and starts another one, as soon as the process has answered.
+  void play(experiments::Evaluation evaluation);
+  /// Requests an image, unless one is on its way: then it returns false. `now` in s.
+  bool request(const ImageRequest& request, double now);
+  /// Reads what has arrived. Returns true if there is a new image of the run.
+  bool read();
+  /// Gives up a process that hasn't answered for kAnswerLimit.
+  void check(double now);
+
+  /// Descriptor to wait for; -1: the process doesn't run.
+  int descriptor() const { return process_ == nullptr ? -1 : process_->output(); }
+  const render::Pixels& image() const { return image_; }
+  /// Reason why the run doesn't play as it should; empty: it does.
+  const std::string& error() const { return error_; }
+
+ private:
+  bool start();
+  void lose(const char* reason);
+  bool take_message();
+
+  std::vector<std::string> command_;
+  experiments::WorkerSetup setup_;
+  experiments::Evaluation evaluation_;
+  std::unique_ptr<system::ChildProcess> process_;
+  bool set_up_ = false;  // the process has the setup
+  bool sent_ = true;     // the process has the evaluation
+  bool awaits_ = false;  // an answer
+  double asked_at_ = 0;  // time of the last request, s
+  int starts_ = 0;       // for this run
+  std::string received_;
+  std::string error_;
+  render::Pixels image_;
+};
+
+}  // namespace limber::app

@@ -1,0 +1,186 @@
+// The loop of the child process, its run and its images.
+#include "app/breed/variation_worker.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "app/breed/variation_protocol.h"
+#include "app/exit_code.h"
+#include "app/experiments/evaluator.h"
+#include "app/experiments/input_lines.h"
+#include "app/paths.h"
+#include "app/show/engine_thread.h"
+#include "app/view/camera_control.h"
+#include "app/view/snapshot_interpolation.h"
+#include "base/log/output.h"
+#include "base/system/clock.h"
+#include "base/system/file.h"
+#include "base/system/signals.h"
+#include "engine/engine.h"
+#include "ui/render/offscreen.h"
+#include "ui/render/renderer.h"
+
+namespace limber::app {
+
+namespace {
+
+using experiments::Evaluation;
+using experiments::WorkerSetup;
+
+constexpr int kStandardOutput = 1;
+
+/// One run of the scene, on a thread of its own.
+class VariationRun {
+ public:
+  explicit VariationRun(engine::EngineOptions options) : engine_(link_, std::move(options)), thread_(engine_) {
+    thread_.allow_ticks(false);
+  }
+
+  void send(std::vector<Message> messages) {
+    link_.command_queue.push({std::move(messages), CommandOrigin{CommandSource::panel, 0, 0, false}});
+    link_.wake_engine();
+  }
+  void pause(bool paused) {
+    if (std::exchange(paused_, paused) != paused) send({{paused ? "/transport/pause" : "/transport/play", {}}});
+  }
+  /// Returns what is wrong with it; empty: nothing.
+  std::string error() {
+    if (!thread_.started()) return {};
+    if (!thread_.result()) return thread_.result().error();
+    if (std::string error = script_error(link_); error_.empty() && !error.empty()) error_ = std::move(error);
+    if (!error_.empty()) return error_;
+    return link_.health.count(engine::HealthItem::bodies) > 0 ? "a body became unstable" : "";
+  }
+  std::shared_ptr<const engine::Snapshot> snapshot() { return link_.snapshots.read(); }
+
+ private:
+  engine::EngineLink link_;
+  engine::Engine engine_;
+  EngineThread thread_;
+  bool paused_ = false;
+  std::string error_;  // the first error of its script
+};
+
+class VariationPlayer {
+ public:
+  /// Opens the renderer. The error says why there are no images.
+  Result<void> open(const DisplayOptions& display);
+  void set_up(WorkerSetup setup);
+  void play(const Evaluation& evaluation);
+  /// Returns the header, and draws the image.
+  ImageHeader draw(const ImageRequest& request, render::Pixels& image);
+
+ private:
+  void move_camera(const MouseMovement& mouse, int height, double now);
+
+  std::unique_ptr<render::OffscreenContext> context_;
+  std::unique_ptr<render::Renderer> renderer_;
+  Evaluator evaluator_;
+  std::string setup_error_;
+  std::uint64_t number_ = 0;
+  std::unique_ptr<VariationRun> run_;
+  SnapshotInterpolation snapshots_;
+  CameraControl camera_;
+  bool moved_camera_ = false;  // the user has moved it, in any run
+  bool placed_camera_ = true;  // false: the run has the camera of the scene, not yet that of the user
+};
+
+Result<void> VariationPlayer::open(const DisplayOptions& display) {
+  Result<std::unique_ptr<render::OffscreenContext>> context = render::OffscreenContext::make(display.gl);
+  if (!context) return Error{context.error()};
+  context_ = std::move(*context);
+  const bool slow = render::gl_is_software() || context_->api() != render::GlApi::core;
+  Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::make(
+      context_->api(), shader_dir(), render_quality(display, slow ? render::Quality::low : render::Quality::high));
+  if (!renderer) return Error{renderer.error()};
+  renderer_ = std::move(*renderer);
+  return {};
+}
+
+void VariationPlayer::set_up(WorkerSetup setup) {
+  const Result<experiments::SceneInfo> scene = evaluator_.set_up(std::move(setup));
+  setup_error_ = scene ? "" : scene.error();
+}
+
+void VariationPlayer::play(const Evaluation& evaluation) {
+  if (moved_camera_ && !snapshots_.empty()) camera_.set_default_view(snapshots_.current());
+  run_.reset();
+  snapshots_ = {};
+  placed_camera_ = !moved_camera_;
+  number_ = evaluation.number;
+  if (setup_error_.empty()) run_ = std::make_unique<VariationRun>(evaluator_.options_to_play(evaluation));
+}
+
+void VariationPlayer::move_camera(const MouseMovement& mouse, int height, double now) {
+  if (!std::exchange(placed_camera_, true)) run_->send(camera_.default_view());
+  if (!mouse.any()) return;
+  moved_camera_ = true;
+  run_->send(camera_.move(mouse, engine::camera_of(snapshots_.current()), height, now));
+}
+
+ImageHeader VariationPlayer::draw(const ImageRequest& request, render::Pixels& image) {
+  ImageHeader header;
+  header.number = number_;
+  header.error = setup_error_;
+  if (run_ == nullptr) return header;
+  run_->pause(request.paused);
+  header.error = run_->error();
+  const double now = system::clock_seconds();
+  if (std::shared_ptr<const engine::Snapshot> newest = run_->snapshot()) snapshots_.add(std::move(newest), now);
+  if (snapshots_.empty()) return header;
+  move_camera(request.mouse, request.height, now);
+  header.time = snapshots_.current().time;
+  if (const Result<void> drawn = renderer_->draw(snapshots_.previous(), snapshots_.current(), snapshots_.mix(now),
+                                                 request.width, request.height);
+      !drawn) {
+    header.error = drawn.error();
+    return header;
+  }
+  image = renderer_->read();
+  header.width = image.width;
+  header.height = image.height;
+  return header;
+}
+
+// Handles a line; false: it is none of the messages, or the answer can't be written.
+bool handle(VariationPlayer& player, const Result<void>& opened, const std::string& line) {
+  if (const std::optional<ImageRequest> request = decode_image_request(line)) {
+    render::Pixels image;
+    ImageHeader header;
+    if (opened) {
+      header = player.draw(*request, image);
+    } else {
+      header.error = opened.error();
+    }
+    return system::write_all(kStandardOutput, encode(header) + "\n") &&
+           system::write_all(kStandardOutput, {reinterpret_cast<const char*>(image.bytes.data()),
+                                               header.width > 0 ? image.bytes.size() : 0});
+  }
+  std::optional<experiments::Request> request = experiments::decode_request(line);
+  if (!request) return false;
+  if (auto* const setup = std::get_if<WorkerSetup>(&*request)) {
+    player.set_up(std::move(*setup));
+  } else {
+    player.play(std::get<Evaluation>(*request));
+  }
+  return true;
+}
+
+}  // namespace
+
+int run_variation_worker(const DisplayOptions& display) {
+  system::block_signals();
+  start_output(OutputMode::batch);
+  VariationPlayer player;
+  const Result<void> opened = player.open(display);
+  InputLines lines;
+  while (const std::optional<std::string> line = lines.next()) {
+    if (!handle(player, opened, *line)) return fail(kUsageError, "not a message for a variation");
+  }
+  return kSuccess;
+}
+
+}  // namespace limber::app
