@@ -20,6 +20,11 @@ namespace {
 using experiments::Axis;
 using Kind = panel::BreedAction::Kind;
 
+// A value for people: a word, or a number with four digits.
+std::string short_text(const Axis& axis, double value) {
+  return axis.choices.empty() ? fmt::format("{:.4g}", value) : axis.text(value);
+}
+
 void add(MouseMovement& sum, const MouseMovement& more) {
   sum.orbit_x += more.orbit_x;
   sum.orbit_y += more.orbit_y;
@@ -110,13 +115,12 @@ void BreedSession::notify(std::string text, bool failed) {
 }
 
 void BreedSession::request_images(int width, int height, const MouseMovement& mouse, double now) {
-  ImageRequest request{
-      std::clamp(width, 1, kMaxVariationSize), std::clamp(height, 1, kMaxVariationSize), view_.paused, {}};
-  for (std::size_t i = 0; i < kCount; i++) {
-    add(mouse_[i], mouse);
-    request.mouse = mouse_[i];
-    processes_[i].check(now);
-    if (processes_[i].request(request, now)) mouse_[i] = {};
+  add(mouse_, mouse);
+  const ImageRequest request{std::clamp(width, 1, kMaxVariationSize), std::clamp(height, 1, kMaxVariationSize),
+                             view_.paused, mouse_};
+  for (VariationProcess& process : processes_) {
+    process.check(now);
+    process.request(request, now);
   }
 }
 
@@ -144,7 +148,7 @@ const panel::BreedView& BreedSession::view() {
     cell.positions = now.individuals[i];
     cell.values.clear();
     const std::vector<double> values = breeding_.values(i);
-    for (std::size_t k = 0; k < values.size(); k++) cell.values.push_back(breeding_.axes()[k].text(values[k]));
+    for (std::size_t k = 0; k < values.size(); k++) cell.values.push_back(short_text(breeding_.axes()[k], values[k]));
     const auto kept = std::ranges::find(kept_, now.individuals[i], &decltype(kept_)::value_type::first);
     cell.preset = kept == kept_.end() ? "" : kept->second;
   }

@@ -48,8 +48,8 @@ class BreedSession {
   Options options_;
   experiments::Breeding breeding_;
   std::vector<VariationProcess> processes_;
-  std::uint64_t runs_ = 0;                   // number of the last evaluation
-  std::array<MouseMovement, kCount> mouse_;  // not sent yet
+  std::uint64_t runs_ = 0;  // number of the last evaluation
+  MouseMovement mouse_;     // all movement of the cameras so far
   panel::BreedView view_;
   std::vector<std::pair<experiments::Breeding::Vector, std::string>> kept_;  // individuals and their presets
 };

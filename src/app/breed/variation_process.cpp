@@ -45,8 +45,8 @@ void VariationProcess::lose(const char* reason) {
   if (starts_ >= kMaxStarts) error_ = reason;
 }
 
-bool VariationProcess::request(const ImageRequest& request, double now) {
-  if (awaits_ || (process_ == nullptr && !start())) return false;
+void VariationProcess::request(const ImageRequest& request, double now) {
+  if (awaits_ || (process_ == nullptr && !start())) return;
   std::string text;
   if (!std::exchange(set_up_, true)) text += experiments::encode(setup_) + "\n";
   if (!std::exchange(sent_, true)) text += experiments::encode(evaluation_) + "\n";
@@ -55,7 +55,6 @@ bool VariationProcess::request(const ImageRequest& request, double now) {
   asked_at_ = now;
   // if the process no longer reads, its output ends, which read() notices
   (void)process_->write(text);
-  return true;
 }
 
 void VariationProcess::check(double now) {

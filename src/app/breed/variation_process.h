@@ -26,8 +26,8 @@ class VariationProcess {
 
   /// Ends the run and starts another one, as soon as the process has answered.
   void play(experiments::Evaluation evaluation);
-  /// Requests an image, unless one is on its way: then it returns false. `now` in s.
-  bool request(const ImageRequest& request, double now);
+  /// Requests an image, unless one is on its way. `now` in s.
+  void request(const ImageRequest& request, double now);
   /// Reads what has arrived. Returns true if there is a new image of the run.
   bool read();
   /// Gives up a process that hasn't answered for kAnswerLimit.

@@ -20,7 +20,7 @@ struct ImageRequest {
   int width = 0;  ///< Pixels, 1 to kMaxVariationSize.
   int height = 0;
   bool paused = false;
-  MouseMovement mouse;  ///< Moves the camera.
+  MouseMovement mouse;  ///< All movement of the camera so far; each run begins with the camera of the scene.
 };
 
 struct ImageHeader {

@@ -74,7 +74,7 @@ class VariationPlayer {
   ImageHeader draw(const ImageRequest& request, render::Pixels& image);
 
  private:
-  void move_camera(const MouseMovement& mouse, int height, double now);
+  void move_camera(const MouseMovement& all, int height, double now);
 
   std::unique_ptr<render::OffscreenContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
@@ -84,8 +84,7 @@ class VariationPlayer {
   std::unique_ptr<VariationRun> run_;
   SnapshotInterpolation snapshots_;
   CameraControl camera_;
-  bool moved_camera_ = false;  // the user has moved it, in any run
-  bool placed_camera_ = true;  // false: the run has the camera of the scene, not yet that of the user
+  MouseMovement moved_;  // movement of the camera in this run
 };
 
 Result<void> VariationPlayer::open(const DisplayOptions& display) {
@@ -106,19 +105,19 @@ void VariationPlayer::set_up(WorkerSetup setup) {
 }
 
 void VariationPlayer::play(const Evaluation& evaluation) {
-  if (moved_camera_ && !snapshots_.empty()) camera_.set_default_view(snapshots_.current());
   run_.reset();
   snapshots_ = {};
-  placed_camera_ = !moved_camera_;
+  camera_ = {};
+  moved_ = {};
   number_ = evaluation.number;
   if (setup_error_.empty()) run_ = std::make_unique<VariationRun>(evaluator_.options_to_play(evaluation));
 }
 
-void VariationPlayer::move_camera(const MouseMovement& mouse, int height, double now) {
-  if (!std::exchange(placed_camera_, true)) run_->send(camera_.default_view());
-  if (!mouse.any()) return;
-  moved_camera_ = true;
-  run_->send(camera_.move(mouse, engine::camera_of(snapshots_.current()), height, now));
+void VariationPlayer::move_camera(const MouseMovement& all, int height, double now) {
+  const MouseMovement last = std::exchange(moved_, all);
+  const MouseMovement mouse{all.orbit_x - last.orbit_x, all.orbit_y - last.orbit_y, all.pan_x - last.pan_x,
+                            all.pan_y - last.pan_y, all.wheel - last.wheel};
+  if (mouse.any()) run_->send(camera_.move(mouse, engine::camera_of(snapshots_.current()), height, now));
 }
 
 ImageHeader VariationPlayer::draw(const ImageRequest& request, render::Pixels& image) {
