@@ -27,6 +27,8 @@ tree = genome.prune(tree, function(limb) return limb.depth > 1 or math.abs(limb.
 tree = genome.mirror(tree)
 local creature, motors = genome.build("creature", tree)
 local trunk = creature.root
+visuals.camera.distance = 3
+sim:on_start(function() visuals.camera:follow(creature) end)
 
 -- it begins where it has come to rest
 local START = 2  -- s

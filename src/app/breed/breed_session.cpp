@@ -70,6 +70,9 @@ void BreedSession::perform(const panel::BreedAction& action) {
     case Kind::pause:
       view_.paused = !view_.paused;
       return;
+    case Kind::follow:
+      view_.following = !view_.following;
+      return;
     case Kind::undo:
       breeding_.undo();
       break;
@@ -117,7 +120,7 @@ void BreedSession::notify(std::string text, bool failed) {
 void BreedSession::request_images(int width, int height, const MouseMovement& mouse, double now) {
   add(mouse_, mouse);
   const ImageRequest request{std::clamp(width, 1, kMaxVariationSize), std::clamp(height, 1, kMaxVariationSize),
-                             view_.paused, mouse_};
+                             view_.paused, view_.following, mouse_};
   for (VariationProcess& process : processes_) {
     process.check(now);
     process.request(request, now);

@@ -21,6 +21,7 @@ std::string encode(const ImageRequest& request) {
   const MouseMovement& m = request.mouse;
   return Json{{"image", {request.width, request.height}},
               {"paused", request.paused},
+              {"follow", request.follow},
               {"mouse", {m.orbit_x, m.orbit_y, m.pan_x, m.pan_y, m.wheel}}}
       .dump();
 }
@@ -39,6 +40,7 @@ std::optional<ImageRequest> decode_image_request(std::string_view line) try {
   request.width = json.at("image").at(0);
   request.height = json.at("image").at(1);
   request.paused = json.at("paused");
+  request.follow = json.at("follow");
   MouseMovement& m = request.mouse;
   const Json& mouse = json.at("mouse");
   double* const numbers[] = {&m.orbit_x, &m.orbit_y, &m.pan_x, &m.pan_y, &m.wheel};

@@ -20,6 +20,7 @@ struct ImageRequest {
   int width = 0;  ///< Pixels, 1 to kMaxVariationSize.
   int height = 0;
   bool paused = false;
+  bool follow = false;  ///< The camera follows the first body with joints.
   MouseMovement mouse;  ///< All movement of the camera so far; each run begins with the camera of the scene.
 };
 

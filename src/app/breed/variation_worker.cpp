@@ -1,6 +1,7 @@
 // The loop of the child process, its run and its images.
 #include "app/breed/variation_worker.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -75,6 +76,7 @@ class VariationPlayer {
 
  private:
   void move_camera(const MouseMovement& all, int height, double now);
+  void follow(bool follows);
 
   std::unique_ptr<render::OffscreenContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
@@ -120,6 +122,14 @@ void VariationPlayer::move_camera(const MouseMovement& all, int height, double n
   if (mouse.any()) run_->send(camera_.move(mouse, engine::camera_of(snapshots_.current()), height, now));
 }
 
+void VariationPlayer::follow(bool follows) {
+  const auto& bodies = snapshots_.current().body_list->bodies;
+  const auto body = std::ranges::find_if(
+      bodies, [](const engine::BodyEntry& each) { return !each.joint_offsets.empty() && !each.part_offsets.empty(); });
+  if (!follows || body == bodies.end()) return camera_.stop_following();
+  run_->send(camera_.follow(snapshots_.current(), body->part_offsets.front()));
+}
+
 ImageHeader VariationPlayer::draw(const ImageRequest& request, render::Pixels& image) {
   ImageHeader header;
   header.number = number_;
@@ -131,6 +141,7 @@ ImageHeader VariationPlayer::draw(const ImageRequest& request, render::Pixels& i
   if (std::shared_ptr<const engine::Snapshot> newest = run_->snapshot()) snapshots_.add(std::move(newest), now);
   if (snapshots_.empty()) return header;
   move_camera(request.mouse, request.height, now);
+  follow(request.follow);
   header.time = snapshots_.current().time;
   if (const Result<void> drawn = renderer_->draw(snapshots_.previous(), snapshots_.current(), snapshots_.mix(now),
                                                  request.width, request.height);

@@ -48,7 +48,7 @@ constexpr const char* kBreedExamples =
     "  limber breed my.lua --presets my_evolve/elites.presets.json --from best_12\n"
     "                                               begin with the result of a search\n"
     "Keys: 1 to 9 like, M mutate, C cross, R random, K keep, Ctrl+Z undo, Ctrl+Y redo, Space pause, Home start\n"
-    "again, F11 full screen. Drag and wheel move all cameras.\n"
+    "again, F follow, F11 full screen. Drag and wheel move all cameras.\n"
     "Exit codes: 1 the scene has an error; 3 there is no display.";
 
 CLI::Validator number_above(double limit, double max, const char* what) {
@@ -183,7 +183,7 @@ void add_breed(CLI::App& app, BreedCommand& command) {
       ->type_name("N")
       ->check(count());
   breed->add_option("--from", command.from, "Presets to begin with, separated by commas; default: the scene's values.")
-      ->type_name("NAME,…")
+      ->type_name("NAMES")
       ->delimiter(',');
   breed->add_option("--presets", command.presets, "File of the presets; default: that of the scene.")
       ->type_name("FILE.json");

@@ -34,7 +34,7 @@ struct BreedKey {
   KeyPress press;
   Kind kind;
 };
-constexpr std::array<BreedKey, 11> kKeys = {{
+constexpr std::array<BreedKey, 12> kKeys = {{
     {{GuiKey::m, {}}, Kind::mutate},
     {{GuiKey::c, {}}, Kind::cross},
     {{GuiKey::r, {}}, Kind::randomize},
@@ -45,6 +45,7 @@ constexpr std::array<BreedKey, 11> kKeys = {{
     {{GuiKey::r, {true, false, false}}, Kind::restart},
     {{GuiKey::home, {}}, Kind::restart},
     {{GuiKey::space, {}}, Kind::pause},
+    {{GuiKey::f, {}}, Kind::follow},
     {{GuiKey::f11, {}}, Kind::full_screen},
 }};
 
@@ -208,14 +209,6 @@ void BreedGui::draw_panel(const BreedView& view) {
 }
 
 void BreedGui::draw_operations(const BreedView& view) {
-  const auto pair = [&](auto&& first, auto&& second) {
-    if (!ImGui::BeginTable("##pair", 2, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_NoSavedSettings)) return;
-    ImGui::TableNextColumn();
-    first();
-    ImGui::TableNextColumn();
-    second();
-    ImGui::EndTable();
-  };
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
   float percent = 100 * amount_;
   if (ImGui::SliderFloat("##amount", &percent, 100 * kMinAmount, 100 * kMaxAmount, "change by %.0f %%",
@@ -224,32 +217,32 @@ void BreedGui::draw_operations(const BreedView& view) {
   names_.add("breed.amount");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("How much Mutate changes: standard deviation, in percent of each parameter's range");
-  pair(
-      [&] {
-        if (button("Mutate  M", "breed.mutate", "Replace the others with variations of the liked ones"))
-          act(Kind::mutate);
-      },
-      [&] {
-        if (button("Cross  C", "breed.cross", "Replace the others with mixes of two liked ones")) act(Kind::cross);
-      });
-  pair(
-      [&] {
-        if (button("Undo  Ctrl+Z", "breed.undo", "Return to the generation before", view.can_undo)) act(Kind::undo);
-      },
-      [&] {
-        if (button("Redo  Ctrl+Y", "breed.redo", "Go to the generation after", view.can_redo)) act(Kind::redo);
-      });
-  pair(
-      [&] {
-        if (button("Random  R", "breed.random", "Replace all that are not liked with random ones"))
-          act(Kind::randomize);
-      },
-      [&] {
-        if (button(view.paused ? "Play  Space###pause" : "Pause  Space###pause", "breed.pause",
-                   "Stop the time, or go on"))
-          act(Kind::pause);
-      });
-  if (button("Start again  Home", "breed.restart", "Start all variations again at the same time")) act(Kind::restart);
+  struct Operation {
+    const char* label;
+    const char* name;
+    const char* hint;
+    Kind kind;
+    bool enabled = true;
+  };
+  const std::array<Operation, 8> operations = {{
+      {"Mutate  M", "breed.mutate", "Replace the others with variations of the liked ones", Kind::mutate},
+      {"Cross  C", "breed.cross", "Replace the others with mixes of two liked ones", Kind::cross},
+      {"Undo  Ctrl+Z", "breed.undo", "Return to the generation before", Kind::undo, view.can_undo},
+      {"Redo  Ctrl+Y", "breed.redo", "Go to the generation after", Kind::redo, view.can_redo},
+      {"Random  R", "breed.random", "Replace all that are not liked with random ones", Kind::randomize},
+      {view.paused ? "Play  Space###pause" : "Pause  Space###pause", "breed.pause", "Stop the time, or go on",
+       Kind::pause},
+      {"Start again  Home", "breed.restart", "Start all variations again at the same time", Kind::restart},
+      {view.following ? "Don't follow  F###follow" : "Follow  F###follow", "breed.follow",
+       "Move the cameras with the first body that has joints", Kind::follow},
+  }};
+  if (!ImGui::BeginTable("##operations", 2, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_NoSavedSettings))
+    return;
+  for (const Operation& operation : operations) {
+    ImGui::TableNextColumn();
+    if (button(operation.label, operation.name, operation.hint, operation.enabled)) act(operation.kind);
+  }
+  ImGui::EndTable();
 }
 
 void BreedGui::draw_keep(const BreedView& view) {

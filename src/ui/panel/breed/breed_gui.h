@@ -40,8 +40,9 @@ struct BreedView {
   std::uint64_t generation = 1;
   bool can_undo = false, can_redo = false;
   bool paused = false;
-  std::string notice;   ///< What has happened last.
-  bool failed = false;  ///< The notice is an error.
+  bool following = false;  ///< The cameras follow the creatures.
+  std::string notice;      ///< What has happened last.
+  bool failed = false;     ///< The notice is an error.
 };
 
 /// What the user wants.
@@ -57,6 +58,7 @@ struct BreedAction {
     keep,
     restart,
     pause,
+    follow,
     full_screen
   };
   Kind kind = Kind::like;
