@@ -22,6 +22,7 @@ using Kind = panel::BreedAction::Kind;
 
 // A value for people: a word, or a number with four digits.
 std::string short_text(const Axis& axis, double value) {
+  if (axis.boolean) return value != 0 ? "true" : "false";
   return axis.choices.empty() ? fmt::format("{:.4g}", value) : axis.text(value);
 }
 
