@@ -1,4 +1,5 @@
 // limber breed: its processes, its presets, and the whole program on a display.
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,18 @@ std::vector<std::string> variation_command() {
   return {LIMBER_PROGRAM, std::string(kVariationArgument), "auto", "low"};
 }
 
+/// As in the program, a write to a process that has ended is only an error.
+class PipeSignalIgnored {
+ public:
+  PipeSignalIgnored() : before_(std::signal(SIGPIPE, SIG_IGN)) {}
+  ~PipeSignalIgnored() { (void)std::signal(SIGPIPE, before_); }
+  PipeSignalIgnored(const PipeSignalIgnored&) = delete;
+  PipeSignalIgnored& operator=(const PipeSignalIgnored&) = delete;
+
+ private:
+  void (*before_)(int);
+};
+
 /// Waits for an image of the run; an empty one if the process has failed for good.
 render::Pixels image_of(VariationProcess& process, bool paused = false) {
   ImageRequest request;
@@ -65,6 +78,7 @@ TEST(Breed, AProcessPlaysAVariation) {
 }
 
 TEST(Breed, AProcessThatDiesIsStartedAgain) {
+  const PipeSignalIgnored ignored;
   const TempFolder folder;
   const std::string marker = folder.path() + "/died";
   // dies when it is started for the first time
@@ -84,6 +98,7 @@ TEST(Breed, AProcessThatDiesIsStartedAgain) {
 }
 
 TEST(Breed, ReportsWhatDoesNotPlay) {
+  const PipeSignalIgnored ignored;
   const TempFolder folder;
   VariationProcess fault(variation_command(), {folder.file("fault.lua", "nonsense()"), 0, {}});
   fault.play({1, 1, {}});
@@ -108,6 +123,7 @@ TEST(Breed, ReportsWhatDoesNotPlay) {
 }
 
 TEST(Breed, GivesUpAProcessThatDoesNotAnswer) {
+  const PipeSignalIgnored ignored;
   VariationProcess process({"sleep", "1000"}, {});
   process.play({1, 1, {}});
   ImageRequest request;
