@@ -10,6 +10,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "ui/panel/imgui/imgui_versions.h"
 #include "ui/panel/text/labels.h"
 #include "ui/panel/theme.h"
 #include "ui/panel/widgets/number_slider.h"
@@ -148,7 +149,7 @@ void BreedGui::draw_cell(const BreedCell& cell, std::size_t index) {
   const ImVec2 high{low.x + static_cast<float>(cell_.width), low.y + static_cast<float>(cell_.height)};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (cell.texture != 0) {
-    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(cell.texture)), low, high);
+    list.AddImage(imgui::texture_id(cell.texture), low, high);
   } else {
     list.AddRectFilled(low, high, packed_color(ThemeColor::panel));
   }

@@ -174,6 +174,9 @@ void publish_fonts(bool draws, bool has_texture) {
 
 float font_height(const ImFont& font) { return height_of(font); }
 
+// a pointer until 1.91.3, then a number
+ImTextureID texture_id(std::uint32_t name) { return (ImTextureID)(std::uintptr_t)name; }
+
 void text_ellipsis(const ImVec2& low, const ImVec2& high, const std::string& text) {
   ellipsis(ImGui::GetWindowDrawList(), low, high, text.c_str(), text.c_str() + text.size());
 }

@@ -1,6 +1,7 @@
 // The differences between Dear ImGui 1.86 (Debian 12), 1.90 (Debian 13) and 1.92. No other file checks the version.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <imgui.h>
@@ -30,6 +31,9 @@ bool builds_fonts();
 /// Publishes loaded fonts; without `draws` there is no texture. `has_texture`: the renderer already has a texture of
 /// earlier fonts.
 void publish_fonts(bool draws, bool has_texture);
+
+/// Returns the texture with this OpenGL name for Dear ImGui.
+ImTextureID texture_id(std::uint32_t name);
 
 /// Draws one line of text in a rectangle, truncated with "…" if it is too long.
 void text_ellipsis(const ImVec2& low, const ImVec2& high, const std::string& text);
