@@ -101,10 +101,19 @@ long_asan_app() {
 }
 # --long tsan: the tests of all modules that use several threads, with the thread sanitizer
 long_tsan() { with_tsan $tsan_takes_long; }
-# --long bench: the tests of the measurements and benchmark programs
+# --long bench: the tests of the measurements and benchmark programs; step rates from Lua, C++ and Python, and MuJoCo's
 long_bench() {
   configure release build -DLIMBER_TESTS=ON -DLIMBER_BENCHMARKS=ON
   build build test_bench limber_measure limber_bench && run_tests build bench
+  compare_step_rates
+}
+# Also makes a million steps from Python.
+compare_step_rates() {
+  local log=build/check/step_rates.log targets="limber limber_python limber_steps_library"
+  grep -q limber_steps_mujoco build/build.ninja && targets+=" limber_steps_mujoco"
+  build build $targets || return
+  if tests/bench/step_rates build --memory 1000000 >"$log" 2>&1; then pass; else fail "the step rates" "$log"; fi
+  say "$(cat "$log")"
 }
 # --long math: the math functions against MPFR, ten million arguments each, and all floats
 long_math() { tests_at_length 'LongMath*'; }
