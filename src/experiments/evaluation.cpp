@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -21,16 +22,35 @@ Json number(double value) {
   return std::isnan(value) ? Json() : Json(value > 0 ? "inf" : "-inf");
 }
 
+// The field has another type or is out of range.
+struct WrongField {};
+
 double to_number(const Json& json) {
+  if (json.is_number()) return json.get<double>();
   if (json.is_null()) return std::numeric_limits<double>::quiet_NaN();
-  if (!json.is_string()) return json.get<double>();
   const double infinity = std::numeric_limits<double>::infinity();
-  return json.get<std::string>() == "inf" ? infinity : -infinity;
+  if (json == "inf") return infinity;
+  if (json == "-inf") return -infinity;
+  throw WrongField{};
 }
+
+double to_finite(const Json& json) {
+  if (!json.is_number()) throw WrongField{};
+  return json.get<double>();
+}
+
+// nlohmann's own conversions accept booleans and fractions, and wrap numbers that are too large.
+template <class Integer = std::uint64_t>
+Integer to_whole(const Json& json) {
+  if (!json.is_number_unsigned() || !std::in_range<Integer>(json.get<std::uint64_t>())) throw WrongField{};
+  return json.get<Integer>();
+}
+
+const Json::array_t& to_list(const Json& json) { return json.get_ref<const Json::array_t&>(); }
 
 std::vector<double> to_numbers(const Json& json) {
   std::vector<double> numbers;
-  for (const Json& each : json) numbers.push_back(to_number(each));
+  for (const Json& each : to_list(json)) numbers.push_back(to_number(each));
   return numbers;
 }
 
@@ -59,13 +79,14 @@ Json to_json(const SceneInfo& scene) {
 
 SceneInfo to_scene(const Json& json) {
   SceneInfo scene;
-  for (const Json& p : json.at("parameters"))
+  for (const Json& p : to_list(json.at("parameters")))
     scene.parameters.push_back({p.at("name"), to_number(p.at("min")), to_number(p.at("max")),
                                 to_number(p.at("initial")), p.at("choices").get<std::vector<std::string>>(),
                                 p.at("whole")});
-  for (const Json& r : json.at("results"))
-    scene.results.push_back({r.at("name"), to_number(r.at("min")), to_number(r.at("max")), r.at("cells")});
-  scene.hash = json.at("hash");
+  for (const Json& r : to_list(json.at("results")))
+    scene.results.push_back(
+        {r.at("name"), to_number(r.at("min")), to_number(r.at("max")), to_whole<int>(r.at("cells"))});
+  scene.hash = to_whole(json.at("hash"));
   return scene;
 }
 
@@ -102,11 +123,15 @@ std::optional<Request> decode_request(std::string_view line) try {
   if (!json) return {};
   if (json->contains("setup")) {
     const Json& setup = json->at("setup");
-    return WorkerSetup{setup.at("scene"), setup.at("duration"), setup.at("parameters").get<std::vector<std::string>>()};
+    return WorkerSetup{setup.at("scene"), to_finite(setup.at("duration")),
+                       setup.at("parameters").get<std::vector<std::string>>()};
   }
   const Json& evaluation = json->at("evaluate");
-  return Evaluation{evaluation.at("number"), evaluation.at("seed"), to_numbers(evaluation.at("values"))};
+  return Evaluation{to_whole(evaluation.at("number")), to_whole(evaluation.at("seed")),
+                    to_numbers(evaluation.at("values"))};
 } catch (const Json::exception&) {  // a field is missing or has another type
+  return {};
+} catch (const WrongField&) {
   return {};
 }
 
@@ -116,8 +141,11 @@ std::optional<Answer> decode_answer(std::string_view line) try {
   if (json->contains("scene")) return to_scene(json->at("scene"));
   if (json->contains("fault")) return WorkerFault{json->at("fault")};
   const Json& outcome = json->at("outcome");
-  return Outcome{outcome.at("number"), to_numbers(outcome.at("results")), outcome.at("hash"), outcome.at("error")};
+  return Outcome{to_whole(outcome.at("number")), to_numbers(outcome.at("results")), to_whole(outcome.at("hash")),
+                 outcome.at("error")};
 } catch (const Json::exception&) {  // a field is missing or has another type
+  return {};
+} catch (const WrongField&) {
   return {};
 }
 

@@ -34,7 +34,7 @@ std::optional<RankMessage> RankMessage::decode(std::string_view bytes) {
   const std::size_t end = bytes.find('\n');
   if (end == std::string_view::npos || end < 2) return {};
   const auto kind = std::ranges::find(kKinds, bytes.front());
-  if (kind == kKinds.end()) return {};
+  if (kind == kKinds.end() || (bytes[1] == '0' && end > 2)) return {};
   RankMessage message;
   message.kind = static_cast<Kind>(kind - kKinds.begin());
   const auto [rest, fault] = std::from_chars(bytes.data() + 1, bytes.data() + end, message.start);
@@ -92,7 +92,8 @@ void RankWorkers::handle(const RankMessages::Message& message, std::vector<Event
   if (decoded && decoded->kind == RankMessage::Kind::hello) {
     const std::size_t end = decoded->text.find('\n');
     const std::string program = decoded->text.substr(0, end);
-    if (end != std::string::npos) rank.host = decoded->text.substr(end + 1);
+    if (end != std::string::npos)
+      rank.host = decoded->text.substr(end + 1, decoded->text.find('\n', end + 1) - end - 1);
     if (program == program_) return;
     const WorkerFault fault{fmt::format("its limber is {}, that of rank 0 is {}; install the same one on all nodes",
                                         printable(program), program_)};

@@ -173,10 +173,27 @@ TEST(Evaluation, LinesKeepAllBits) {
   EXPECT_EQ(same.results[2], -1 / 0.0);
   EXPECT_EQ(same.hash, outcome.hash);
   EXPECT_EQ(same.error, outcome.error);
+}
+
+TEST(Evaluation, RejectsOtherLines) {
   for (const char* wrong :
-       {"", "{}", "[]", "{\"evaluate\":{}}", "{\"evaluate\":3}", "null", "{\"setup\":{\"scene\":1}}"})
+       {"", "{}", "[]", "{\"evaluate\":{}}", "{\"evaluate\":3}", "null", "{\"setup\":{\"scene\":1}}",
+        R"({"setup":{"scene":"s","duration":true,"parameters":[]}})",
+        R"({"setup":{"scene":"s","duration":"inf","parameters":[]}})",
+        R"({"setup":{"scene":"s","duration":1,"parameters":"a"}})",
+        R"({"evaluate":{"number":1.5,"seed":1,"values":[]}})", R"({"evaluate":{"number":1,"seed":-1,"values":[]}})",
+        R"({"evaluate":{"number":1,"seed":18446744073709551616,"values":[]}})",
+        R"({"evaluate":{"number":1,"seed":true,"values":[]}})", R"({"evaluate":{"number":1,"seed":1,"values":3}})",
+        R"({"evaluate":{"number":1,"seed":1,"values":{"a":3}}})",
+        R"({"evaluate":{"number":1,"seed":1,"values":["-infinity"]}})"})
     EXPECT_FALSE(decode_request(wrong).has_value()) << wrong;
-  for (const char* wrong : {"", "{}", "{\"outcome\":{\"number\":1}}", "{\"scene\":{}}", "{\"fault\":1}"})
+  for (const char* wrong :
+       {"", "{}", "{\"outcome\":{\"number\":1}}", "{\"scene\":{}}", "{\"fault\":1}",
+        R"({"outcome":{"number":1,"results":[true],"hash":1,"error":""}})",
+        R"({"outcome":{"number":1,"results":[],"hash":1e3,"error":""}})",
+        R"({"scene":{"parameters":{},"results":[],"hash":1}})",
+        R"({"scene":{"parameters":[],"results":[{"name":"r","min":0,"max":1,"cells":2147483648}],"hash":1}})",
+        R"({"scene":{"parameters":[],"results":[{"name":"r","min":0,"max":1,"cells":-1}],"hash":1}})"})
     EXPECT_FALSE(decode_answer(wrong).has_value()) << wrong;
 }
 

@@ -183,7 +183,8 @@ TEST(RankMessage, BytesGiveTheSameMessage) {
     EXPECT_EQ(back->start, message.start);
     EXPECT_EQ(back->text, message.text);
   }
-  for (const char* wrong : {"", "\n", "l\n", "l1", "x1\n", "l-1\n", "l1 \n", "l18446744073709551616\n", "l1a\n"})
+  for (const char* wrong :
+       {"", "\n", "l\n", "l1", "x1\n", "l-1\n", "l1 \n", "l18446744073709551616\n", "l1a\n", "l01\n", "l00\n"})
     EXPECT_FALSE(RankMessage::decode(wrong).has_value()) << wrong;
 }
 
