@@ -32,7 +32,7 @@ package_checks() {
   python=$(built_for "$release" --python-package) || { fail "the Python package of $release was not built" "build/check/package_$release--python-package.log"; return; }
   wheel=$(built_for "$release" --wheel) || { fail "the wheel of $release was not built" "build/check/package_$release--wheel.log"; return; }
   rm -rf "$folder" && mkdir -p "$folder"
-  cp "$deb" "$python" "$wheel" "$tarball" .ci/package/python_check.py .ci/package/inside.sh .ci/package/zsh_completion "$folder/"
+  cp -r "$deb" "$python" "$wheel" "$tarball" tests/mpi .ci/package/python_check.py .ci/package/inside.sh .ci/package/zsh_completion "$folder/"
   package_rows bare | cut -d' ' -f1 >"$folder/tools"
   older_package "$deb" "$folder/older.deb" && build/limber play --headless --fast --ticks 120 --hash --seed 3 \
     2>/dev/null | tail -n 1 >"$folder/expected" || { fail "the files for the checks in $release could not be made"; return; }

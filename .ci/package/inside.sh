@@ -1,7 +1,7 @@
 #!/bin/bash
 # Tests the packages in a minimal Debian. `./check --long package` calls it in the root, in a folder with
-# limber_*.deb, python3-limber_*.deb, limber-*.whl, older.deb, limber-*.tar.gz, python_check.py, expected (the hash of the run below), tools (packages that the checks need)
-# and zsh_completion.
+# limber_*.deb, python3-limber_*.deb, limber-*.whl, older.deb, limber-*.tar.gz, python_check.py, expected (the hash of the
+# run below), tools (packages that the checks need), zsh_completion and mpi (tests/mpi).
 # Prints "ok NAME" or "FAILED NAME" with the end of the output for each check.
 # shellcheck disable=SC2046,SC2086
 cd "$(dirname "$0")" || exit 3
@@ -80,8 +80,19 @@ check python_has_its_version sh -c 'python3 -c "import limber; print(limber.__ve
 check python_removes apt-get purge -y -q python3-limber
 check python_leaves_nothing test ! -e /usr/lib/python3/dist-packages/limber
 
+# ---- the modules for MPI, without MPI and with it
+without_mpi() {
+  ! PMI_RANK=0 PMI_SIZE=1 limber sweep /usr/share/limber/scripts/gait.lua --samples 1 --out none.csv 2>none.log || return
+  cat none.log
+  grep -q "/usr/lib/limber/limber-mpi-mpich.so can't be loaded: libmpich.*Install this MPI on the node" none.log
+}
+with_mpi() { [ "$(mpi/run "$1" openmpi_table mpich_table | tee /dev/stderr | grep -c '^ok ')" = 2 ]; }
+check names_the_missing_mpi without_mpi
+
 # ---- integration with desktops, shells, man pages
 check installs_tools install_debian $(cat tools)
+check sweeps_with_mpi with_mpi /usr/bin/limber
+check tarball_sweeps_with_mpi with_mpi "$tarball"
 check lintian lintian --allow-root --fail-on error,warning "$deb"
 check lintian_python lintian --allow-root --fail-on error ./python3-limber_*.deb
 check desktop_file is_clean desktop-file-validate /usr/share/applications/limber.desktop
@@ -108,7 +119,7 @@ check tarball_draws_a_still draws "$tarball"
 check tarball_window shows_a_window "$tarball"
 
 # ---- removal and purge
-removed() { ! ls -d /usr/bin/limber /usr/share/limber /usr/share/doc/limber 2>/dev/null | grep .; }
+removed() { ! ls -d /usr/bin/limber /usr/lib/limber /usr/share/limber /usr/share/doc/limber 2>/dev/null | grep .; }
 check removes apt-get remove -y -q limber
 check removal_leaves_nothing removed
 check removal_keeps_the_home home_is_kept

@@ -143,7 +143,12 @@ class Job:
         self.implementation = implementation
         self.random = random.Random(1)
         self.launcher = shutil.which(f"mpirun.{implementation}")
-        self.module = Path(bench.program).parent / f"limber-mpi-{implementation}.so"
+        self.module = self.module_of(implementation)
+
+    def module_of(self, implementation):
+        """The module beside the program, else that of an installed one."""
+        folder, name = Path(self.bench.program).parent, f"limber-mpi-{implementation}.so"
+        return folder / name if (folder / name).exists() else folder.parent / "lib/limber" / name
 
     def words(self, count, words):
         if self.launcher is None or not self.module.exists():
@@ -236,7 +241,7 @@ class Job:
         _, err = bench.start(self.words(2, [str(alone), *SWEEP, "--out", "alone.csv"])).communicate(timeout=LIMIT)
         expect(re.search(rf"rank [01] on \S+: the module limber-mpi-{self.implementation}.so is not beside", err), err)
         other = "mpich" if self.implementation == "openmpi" else "openmpi"
-        if (self.module.parent / f"limber-mpi-{other}.so").exists():
+        if self.module_of(other).exists():
             words = [bench.program, *SWEEP, "--mpi", other, "--out", "alone.csv"]
             _, err = bench.start(self.words(2, words)).communicate(timeout=LIMIT)
             expect(f"the launcher started 2 ranks, but {other} sees 1" in err, err)
