@@ -156,7 +156,7 @@ debian_documents() {
   debian_changelog "$version" >"$doc/changelog.Debian"
   cp .ci/package/copyright "$doc/copyright"
   install_site "${doc#"$PWD"/}/html"
-  gzip -9n "$doc/changelog" "$doc/changelog.Debian" "$1/usr/share/man/man1/limber.1"
+  gzip -9n "$doc/changelog" "$doc/changelog.Debian" "$1"/usr/share/man/man1/*.1
   mkdir -p "$1/usr/share/doc-base"
   # Debian 12's lintian reports the unknown tag as an error
   if [ "$(release_tag)" != deb12 ]; then
