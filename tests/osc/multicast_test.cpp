@@ -10,11 +10,13 @@
 #include <unistd.h>
 
 #include <array>
+#include <chrono>
 #include <cstring>
 
 #include "base/system/net/interfaces.h"
 #include "base/system/net/socket_address.h"
 #include "base/system/net/udp_socket.h"
+#include "base/system/wait.h"
 #include "support/skip.h"
 
 namespace limber::system {
@@ -104,7 +106,18 @@ Descriptor add_tunnel() {
   return tunnel;
 }
 
-// IPv6: the group is joined on the interface of its zone, or on all; link-local groups need a zone.
+// The system adds routes and addresses of a new network a little later.
+bool send_when_up(UdpSender& sender, const Endpoint& to, std::span<const char> packet) {
+  constexpr int kMaxTries = 2000;
+  for (int tries = 0; tries < kMaxTries; tries++) {
+    if (sender.send(to, packet) == 0) return true;
+    (void)wait_ready({}, std::chrono::milliseconds(10));
+  }
+  return false;
+}
+
+// IPv6: the group is joined on the interface of its zone, or on all; link-local groups need a zone. A shared port that
+// has not joined it gets nothing.
 int receive_ipv6_in_own_namespace() {
   if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0 || !enable_loopback()) return no_namespace;
   const Descriptor tunnel = add_tunnel();
@@ -114,18 +127,20 @@ int receive_ipv6_in_own_namespace() {
     const Endpoint group{parse_ip(text).value(), 9003};
     const auto first = open_multicast(group, {});
     const auto second = open_multicast(group, {});
-    if (!first || !second) return not_opened;
+    const auto other = open_udp({IpAddress(0, 0), 9003}, PortSharing::shared);
+    if (!first || !second || !other) return not_opened;
     UdpSender sender;
     if (!sender.open()) return not_opened;
     Endpoint to = group;
     if (!group.ip.is_link_local()) to.ip = IpAddress(group.ip.high, group.ip.low, if_nametoindex("limber0"));
-    if (sender.send(to, packet) != 0) return not_sent;
+    if (!send_when_up(sender, to, packet)) return not_sent;
     for (const UdpSocket* const socket : {&*first, &*second}) {
       DatagramReader reader;
       const std::span<const Datagram> got = reader.read(socket->fd());
       if (got.size() != 1 || !ip_text(got[0].from.ip).ends_with("%limber0")) return not_received;
       if (send_datagram(socket->fd(), got[0].from, packet) != 0) return not_answered;
     }
+    if (count_received(*other) != 0) return received_twice;
   }
   return open_multicast({parse_ip("ff02::7%4000").value(), 9003}, {}).ok() ? no_error : passed;
 }

@@ -58,11 +58,15 @@ bool join_ipv6(int fd, const IpAddress& group) {
 
 Result<UdpSocket> open_udp(const Endpoint& at, PortSharing sharing) {
   Result<UdpSocket> socket = open_bound(at, sharing);
-#ifdef IP_MULTICAST_ALL
   // else a shared port receives the groups that other sockets have joined
-  const int off = 0;
-  if (socket && sharing == PortSharing::shared)
+  [[maybe_unused]] const int off = 0;
+#ifdef IP_MULTICAST_ALL
+  if (socket && sharing == PortSharing::shared && !at.ip.is_v6)
     setsockopt(socket->fd(), IPPROTO_IP, IP_MULTICAST_ALL, &off, sizeof off);
+#endif
+#ifdef IPV6_MULTICAST_ALL
+  if (socket && sharing == PortSharing::shared && at.ip.is_v6)
+    setsockopt(socket->fd(), IPPROTO_IPV6, IPV6_MULTICAST_ALL, &off, sizeof off);
 #endif
   return socket;
 }
