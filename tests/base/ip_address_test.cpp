@@ -53,6 +53,13 @@ TEST(IpAddress, HasAZone) {
   EXPECT_EQ(resolve("fe80::1%no-such-interface", 1).error(), "there is no network interface 'no-such-interface'");
 }
 
+TEST(IpAddress, HostsHaveNoBlanks) {
+  for (const char* text : {"stage", "a-b.example", "10.0.0.1", "fe80::1%lo", "bühne.example"})
+    EXPECT_TRUE(is_host_text(text)) << text;
+  for (const char* text : {"", "two words", "new\nline", "tab\t", "\x1b[2J", "\xff"})
+    EXPECT_FALSE(is_host_text(text)) << text;
+}
+
 TEST(IpAddress, SplitsHostAndPort) {
   const auto parts = [](std::string_view text) {
     const HostPort p = split_host_port(text);

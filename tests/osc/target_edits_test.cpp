@@ -63,6 +63,8 @@ TEST(TargetEdits, RejectsBadInput) {
   EXPECT_EQ(rig.execute(target_message("add", {"nowhere"})),
             "'nowhere': 'nowhere' is not HOST:PORT; write "
             "HOST:PORT[,rate=60,bundle=1472,streams=pos+rot,bodies=arm*,errors=on]");
+  for (const char* host : {"two words:9000", "new\nline:9000", "\x1b[2J:9000", "a (b:9000"})
+    EXPECT_NE(rig.execute(target_message("add", {host})).find("is not HOST:PORT"), std::string::npos) << host;
   EXPECT_NE(rig.execute(target_message("add", {"h:1", "rate=0"})).find("rate must be 0.1 to 1000"), std::string::npos);
   EXPECT_EQ(rig.execute(target_message("remove", {"h:1"})), "there is no target h:1; /list/targets lists them");
   EXPECT_EQ(rig.execute(target_message("add", {std::string(2000, 'x').c_str()})), "the text has more than 1024 bytes");

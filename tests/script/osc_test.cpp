@@ -149,6 +149,8 @@ TEST(Osc, ReportsMistakes) {
       {"osc:stream_to('a:1', { streams = 'poss' })", "osc:stream_to: there is no stream 'poss'; did you mean 'pos'?"},
       {"osc:stream_to('a:1', { bundle = 99 })", "osc:stream_to: bundle is 'off', 1472, 8192 or 65504, not 99"},
       {"osc:stream_to('a:1', { bodie = 'x' })", "osc:stream_to: opts has no 'bodie'; did you mean 'bodies'?"},
+      {"osc:stream_to('two words:9000')",
+       "'two words:9000' is not an address; write \"host:port\", such as \"127.0.0.1:9000\""},
       {"osc:to('::1:9000')", "'::1:9000' is not an address; write \"host:port\", such as \"127.0.0.1:9000\""},
       {"osc:to('[::1]')", "'[::1]' is not an address; write \"host:port\", such as \"127.0.0.1:9000\""},
       {"osc:to('[fe80::1]:9')", "fe80::1 is valid on one network only; add its interface, such as [fe80::1%eth0]"},

@@ -158,7 +158,7 @@ Result<StreamTarget> parse_target_text(std::string_view text, const std::vector<
   const system::HostPort address = system::split_host_port(pieces[0]);
   if (const std::string fault = address_fault("--osc-out", address); !fault.empty()) return Error{fault};
   const std::optional<std::uint16_t> port = parse_port(address.port);
-  if (!port || *port == 0 || address.host.empty()) {
+  if (!port || *port == 0 || !system::is_host_text(address.host)) {
     return Error{fmt::format("'{}' is not HOST:PORT", printable(pieces[0]))};
   }
   target.host = address.host;

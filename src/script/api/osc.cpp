@@ -22,8 +22,8 @@ Result<HostPort> host_port(std::string_view text) {
   const bool whole = !parts.port.empty() && parts.port.find_first_not_of("0123456789") == std::string_view::npos;
   const double port = whole ? parse_number(parts.port).value_or(0) : 0;
   const bool is_v6 = parts.host.find(':') != std::string_view::npos;
-  const bool valid = !parts.host.empty() && is_v6 == parts.bracketed && printable(text) == text &&
-                     (!is_v6 || system::is_ip_address(parts.host));
+  const bool valid =
+      system::is_host_text(parts.host) && is_v6 == parts.bracketed && (!is_v6 || system::is_ip_address(parts.host));
   if (port < 1 || port > 65535 || !valid) {
     return Error{
         fmt::format("'{}' is not an address; write \"host:port\", such as \"127.0.0.1:9000\"", printable(text))};

@@ -10,10 +10,15 @@
 
 #include "base/system/net/socket_address.h"
 #include "base/system/open.h"
+#include "base/text.h"
 
 namespace limber::system {
 
 std::string endpoint_text(const Endpoint& e) { return host_port_text(ip_text(e.ip), e.port); }
+
+bool is_host_text(std::string_view text) {
+  return !text.empty() && printable(text) == text && text.find_first_of(" \n\t") == std::string_view::npos;
+}
 
 Result<Endpoint> resolve(const std::string& host, std::uint16_t port, IpVersion preferred) {
   if (const std::optional<IpAddress> ip = parse_ip(host)) return Endpoint{*ip, port};

@@ -24,6 +24,9 @@ struct Endpoint {
 /// Returns "127.0.0.1:9003" or "[::1]:9003". [any]
 std::string endpoint_text(const Endpoint& endpoint);
 
+/// True if the text may be a host: it isn't empty, and has neither blanks nor control characters. [any]
+bool is_host_text(std::string_view text);
+
 /// The kind of address to prefer if a name has both.
 enum class IpVersion : std::uint8_t { v4, v6 };
 
