@@ -30,10 +30,15 @@ std::optional<Endpoint> parse_literal(const std::string& host, std::uint16_t por
 
 struct HostResolver::Shared {
   std::function<void()> notify;
-  std::mutex mutex;                                                // guards the members below
-  std::map<std::string, std::optional<Result<Endpoint>>> results;  // by host; empty: pending
+  std::mutex mutex;  // guards the members below
+  // by host and preferred kind of address; empty: pending
+  std::map<std::pair<std::string, IpVersion>, std::optional<Result<Endpoint>>> results;
   bool changed = false;
   std::condition_variable look_up_ended;  // notified when a look-up ends
+
+  std::size_t pending() const {
+    return static_cast<std::size_t>(std::ranges::count_if(results, [](const auto& each) { return !each.second; }));
+  }
 };
 
 HostResolver::HostResolver(ResolveFunction look_up, std::function<void()> notify)
@@ -45,17 +50,21 @@ std::optional<Result<Endpoint>> HostResolver::find(const std::string& host, std:
   if (const std::optional<Endpoint> at = parse_literal(host, port, preferred_)) return *at;
   {
     const std::scoped_lock lock(shared_->mutex);
-    const auto [entry, inserted] = shared_->results.try_emplace(host);
+    const auto [entry, inserted] = shared_->results.try_emplace({host, preferred_});
     if (!inserted) {
       if (!entry->second || !entry->second->ok()) return entry->second;
       return Endpoint{(*entry->second)->ip, port};
+    }
+    if (shared_->pending() > kMaxLookUps) {
+      shared_->results.erase(entry);
+      return std::nullopt;
     }
   }
   const auto run_look_up = [host, port, preferred = preferred_, look_up = look_up_, shared = shared_] {
     Result<Endpoint> at = look_up(host, port, preferred);
     {
       const std::scoped_lock lock(shared->mutex);
-      shared->results[host] = std::move(at);
+      shared->results[{host, preferred}] = std::move(at);
       shared->changed = true;
     }
     shared->look_up_ended.notify_all();
@@ -69,14 +78,20 @@ std::optional<Result<Endpoint>> HostResolver::find(const std::string& host, std:
   return std::nullopt;
 }
 
-std::optional<Result<Endpoint>> HostResolver::wait_for(const std::string& host, std::uint16_t port,
-                                                       std::chrono::milliseconds limit) {
-  if (std::optional<Result<Endpoint>> at = find(host, port)) return at;
-  {
-    std::unique_lock lock(shared_->mutex);
-    shared_->look_up_ended.wait_for(lock, limit, [&] { return shared_->results[host].has_value(); });
+std::optional<Result<Endpoint>> HostResolver::wait_until(std::chrono::steady_clock::time_point time,
+                                                         const std::string& host, std::uint16_t port) {
+  std::optional<Result<Endpoint>> at = find(host, port);
+  while (!at && std::chrono::steady_clock::now() < time) {
+    {
+      std::unique_lock lock(shared_->mutex);
+      shared_->look_up_ended.wait_until(lock, time, [&] {
+        const auto entry = shared_->results.find({host, preferred_});
+        return entry == shared_->results.end() ? shared_->pending() < kMaxLookUps : entry->second.has_value();
+      });
+    }
+    at = find(host, port);
   }
-  return find(host, port);
+  return at;
 }
 
 bool HostResolver::consume_changed() {
@@ -105,10 +120,13 @@ std::vector<std::string> TargetResolver::resolve(const std::vector<StreamTarget>
   std::vector<std::string> errors;
   targets_.clear();
   retry_at_.reset();
+  const auto deadline = std::chrono::steady_clock::now() + wait;
+  // all look-ups run at the same time
   for (const StreamTarget& config : configured) {
-    const std::optional<Result<Endpoint>> endpoint = wait.count() > 0
-                                                         ? host_names_.wait_for(config.host, config.port, wait)
-                                                         : host_names_.find(config.host, config.port);
+    if (wait.count() > 0) (void)host_names_.find(config.host, config.port);
+  }
+  for (const StreamTarget& config : configured) {
+    const std::optional<Result<Endpoint>> endpoint = host_names_.wait_until(deadline, config.host, config.port);
     if (!endpoint) continue;
     if (*endpoint && sender.is_own_input(**endpoint)) {
       sender.report_own_input(**endpoint);

@@ -28,12 +28,14 @@ class HostResolver {
   /// `notify` is called on the look-up's thread when a look-up ends, even after this object was destroyed.
   HostResolver(ResolveFunction look_up, std::function<void()> notify);
 
+  static constexpr std::size_t kMaxLookUps = 16;  ///< At the same time; further ones begin when others end.
+
   /// Returns numeric addresses and "localhost" immediately, other names once their look-up has ended. Returns an empty
-  /// optional while the look-up is pending.
+  /// optional while the look-up is pending, or waits for others to end.
   std::optional<Result<Endpoint>> find(const std::string& host, std::uint16_t port);
-  /// As find(), but waits for the look-up up to `limit`. [main, before the network thread runs]
-  std::optional<Result<Endpoint>> wait_for(const std::string& host, std::uint16_t port,
-                                           std::chrono::milliseconds limit);
+  /// As find(), but waits for the look-up until `time`.
+  std::optional<Result<Endpoint>> wait_until(std::chrono::steady_clock::time_point time, const std::string& host,
+                                             std::uint16_t port);
   /// True if a look-up has ended since the last call.
   bool consume_changed();
   /// Sets the kind of address of names that have both. Call invalidate() next.
@@ -60,8 +62,8 @@ class TargetResolver {
   /// Before the first resolve() of a configuration: resolves all names again. `preferred`: for names with addresses of
   /// both kinds.
   void begin_config(IpVersion preferred);
-  /// Sets the targets that have a resolved address and are not an own input of the sender. Waits for each look-up up to
-  /// `wait`. Returns the errors, each once per configuration. `now` in ns.
+  /// Sets the targets that have a resolved address and are not an own input of the sender. Waits for the look-ups up to
+  /// `wait` in all. Returns the errors, each once per configuration. `now` in ns.
   std::vector<std::string> resolve(const std::vector<StreamTarget>& configured, Sender& sender, std::int64_t now,
                                    std::chrono::milliseconds wait = {});
   const std::vector<ResolvedTarget>& targets() const { return targets_; }
