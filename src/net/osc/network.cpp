@@ -143,7 +143,7 @@ Result<void> Network::start() {
   config_.scene = link_.osc_config.read();
   std::vector<std::string> errors;
   if (const Result<void> opened = sender_.open(); !opened) errors.push_back(opened.error());
-  std::ranges::move(apply(effective_config(options_, config_.scene.get())), std::back_inserter(errors));
+  std::ranges::move(apply(edited_config()), std::back_inserter(errors));
   std::ranges::move(tcp_.listen(options_.tcp), std::back_inserter(errors));
   // a machine that has just booted may not resolve names yet
   for (const std::string& error : resolve_targets(kStartLookUpTimeout)) log_warning("{}", error);
@@ -257,11 +257,7 @@ void Network::apply_new_config() {
   const bool received = scene_config != config_.scene;
   config_.scene = std::move(scene_config);
   const bool edited = process_target_requests();
-  OscConfig config = config_.current;
-  if (received || edited) {
-    config = effective_config(options_, config_.scene.get());
-    config.targets = edited_targets();
-  }
+  const OscConfig config = received || edited ? edited_config() : config_.current;
   const bool changed = config != config_.current;
   if (!changed && !resolved) return;
   const std::vector<std::string> before = status_lines();
@@ -279,7 +275,7 @@ bool Network::process_target_requests() {
   for (const TargetEdits::Request& request : config_.edits.drain()) {
     if (same_address(request.message.address, "/list/targets")) {
       Message answer{"/list/targets", {}};
-      for (const StreamTarget& target : edited_targets())
+      for (const StreamTarget& target : edited_config().targets)
         answer.args.push_back(Arg::of(std::string_view(target_text(target))));
       if (answer.args.empty()) answer.args.push_back(Arg::of(""));  // an answer must not look like a query
       link_.push_out({engine::Outgoing::Destination::reply, request.origin, std::move(answer)});
@@ -302,11 +298,14 @@ Result<void> Network::handle_target_request(const TargetEdits::Request& request)
   if (origin.source == CommandSource::osc && !origin.ip.is_any() && !tcp_.is_connected({origin.ip, origin.port}) &&
       !amplification_.is_unlimited(origin.ip, clock_.steady()))
     return Error{"a sender in another network must return its /token first, or be in --osc-allow"};
-  return config_.edits.execute(request.message, edited_targets());
+  return config_.edits.execute(request.message, edited_config().targets);
 }
 
-std::vector<StreamTarget> Network::edited_targets() const {
-  return config_.edits.applied_to(effective_config(options_, config_.scene.get()).targets);
+// The configuration of the command line or the scene, with the targets that messages have changed.
+OscConfig Network::edited_config() const {
+  OscConfig config = effective_config(options_, config_.scene.get());
+  config.targets = config_.edits.applied_to(std::move(config.targets));
+  return config;
 }
 
 // Repeats failed look-ups. Their errors were already logged.

@@ -118,7 +118,7 @@ class Network {
   TcpCallbacks tcp_callbacks();
   void apply_new_config();
   bool process_target_requests();
-  std::vector<StreamTarget> edited_targets() const;
+  OscConfig edited_config() const;
   Result<void> handle_target_request(const TargetEdits::Request& request);
   void retry_listen();
   void retry_look_ups();

@@ -200,7 +200,7 @@ bool is_for_network(const Message& message) {
 }
 
 // Moves the messages of nested bundles that are due later out of a packet: a command for each entry of `later`.
-std::vector<engine::Command> take_later(Decoded& packet) {
+std::vector<engine::Command> extract_later(Decoded& packet) {
   if (packet.later.empty()) return {};
   std::vector<engine::Command> commands(packet.later.size());
   std::vector<Message> now;
@@ -225,7 +225,7 @@ Receiver::ScanResult Receiver::scan(const char* data, std::size_t size, const Co
   Result<Decoded> decoded = decode_packet(data, size);
   if (!decoded || scheduled_.is_future(decoded->time_tag)) return scanned;
   scanned.urgent = true;
-  (void)take_later(*decoded);
+  (void)extract_later(*decoded);
   for (Message& message : decoded->messages) {
     if (const std::optional<engine::UrgentKind> kind = engine::urgent_kind(message))
       link_.command_queue.push_urgent({*kind, std::move(message), origin, scanned.arrival});
@@ -267,7 +267,7 @@ void Receiver::process(const char* data, std::size_t size, CommandOrigin origin,
   if (link_.message_log.enabled()) log_messages(origin, *decoded);
   for (const RejectedMessage& r : decoded->rejected) reject(origin, r.address, r.reason);
 
-  std::vector<engine::Command> later = take_later(*decoded);
+  std::vector<engine::Command> later = extract_later(*decoded);
   // a ping is answered by this thread, not by the simulation
   const auto pings = std::erase_if(decoded->messages, [](const Message& m) { return m.address == "/ping"; });
   for (std::size_t i = 0; i < pings; i++) callbacks_.pong(origin);
