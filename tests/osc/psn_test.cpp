@@ -102,6 +102,25 @@ TEST_F(PsnTranslation, TrackersThatAreNotSeenHaveNoPlace) {
   const std::vector<double> numbers = numbers_of(lost[0]);
   for (int i = 0; i < 4; i++) EXPECT_TRUE(std::isnan(numbers[static_cast<std::size_t>(i)])) << i;
   EXPECT_EQ(numbers[7], 0);
+  EXPECT_TRUE(send(psn_data(2, psn_chunk(3, "", true))).empty()) << "it has no values at all";
+}
+
+TEST_F(PsnTranslation, NamesAreUnique) {
+  const auto names_of = [&](std::uint64_t timestamp) {
+    std::string names;
+    std::string trackers;
+    for (unsigned id = 1; id <= 3; id++) trackers += psn_data_tracker(id, {1, 2, 3}, {0, 0, 0});
+    for (const Message& message : send(psn_data(timestamp, trackers))) names += message.args[0].text + " ";
+    return names;
+  };
+  const std::string info =
+      psn_info(psn_info_tracker(1, "hat_3") + psn_info_tracker(2, "hat") + psn_info_tracker(3, "hat"));
+  send(info);
+  EXPECT_EQ(names_of(1), "hat_3 hat hat_3_3 ");
+  send(info);
+  EXPECT_EQ(names_of(2), "hat_3 hat hat_3_3 ") << "they stay";
+  send(psn_info(psn_info_tracker(2, "glove") + psn_info_tracker(3, "hat")));
+  EXPECT_EQ(names_of(3), "hat_3 glove hat ") << "a name becomes free";
 }
 
 TEST_F(PsnTranslation, DataWaitForNamesAtMostTwoSeconds) {

@@ -64,11 +64,11 @@ PsnInput::Sender& PsnInput::sender_of(const system::IpAddress& ip, std::int64_t 
 
 void PsnInput::learn(Sender& sender, const std::vector<PsnTracker>& trackers) {
   for (const PsnTracker& tracker : trackers) {
-    if (!sender.names.contains(tracker.id) && sender.names.size() >= kMaxNames) continue;
+    const auto known = sender.names.find(tracker.id);
+    if (known == sender.names.end() && sender.names.size() >= kMaxNames) continue;
+    if (known != sender.names.end()) sender.used_names.erase(known->second);
     std::string name = joint_name(tracker.name, tracker.id);
-    const bool taken = std::ranges::any_of(
-        sender.names, [&](const auto& known) { return known.first != tracker.id && known.second == name; });
-    if (taken) name = fmt::format("{}_{}", name, tracker.id);
+    while (!sender.used_names.insert(name).second) name += fmt::format("_{}", tracker.id);
     sender.names[tracker.id] = std::move(name);
   }
 }
@@ -94,6 +94,7 @@ Result<std::vector<Message>> PsnInput::translate(std::string_view bytes, const s
   if (is_late(sender, packet->timestamp) || waits) return messages;
   messages.reserve(packet->trackers.size());
   for (const PsnTracker& tracker : packet->trackers) {
+    if (!tracker.position && !tracker.rotation && !tracker.validity) continue;
     const auto known = sender.names.find(tracker.id);
     messages.push_back(message_of(known == sender.names.end() ? default_name(tracker.id) : known->second, tracker));
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +25,8 @@ class PsnInput {
   static constexpr std::uint64_t kMaxReordering = 1'000'000;   ///< Microseconds; an older packet is a restart.
 
   /// Returns the messages of a packet from the address `ip` at the time `now` (ns). None for an info packet, for one
-  /// that is older than its predecessor, and until the names of the sender's trackers are known. Error: parse_psn().
+  /// that is older than its predecessor, for trackers without values, and until the names of the sender's trackers are
+  /// known. Error: parse_psn().
   Result<std::vector<Message>> translate(std::string_view bytes, const system::IpAddress& ip, std::int64_t now);
 
  private:
@@ -35,6 +37,7 @@ class PsnInput {
     std::uint64_t timestamp = 0;  // of the newest data packet
     bool has_data = false;
     std::map<std::uint16_t, std::string> names;
+    std::set<std::string> used_names;
   };
 
   Sender& sender_of(const system::IpAddress& ip, std::int64_t now);
