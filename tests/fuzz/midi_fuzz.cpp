@@ -64,7 +64,7 @@ void follow_clock(const std::vector<MidiMessage>& messages) {
     for (const limber::Message& sent : clock.drain(time)) {
       if (sent.address != "/clock/sync") continue;
       must(sent.args.size() == 3 && std::isfinite(sent.args[0].number) && sent.args[0].number >= 0);
-      must(sent.args[1].number >= limber::midi::kMinTempo && sent.args[1].number <= limber::midi::kMaxTempo);
+      must(sent.args[1].number >= limber::sim::kMinTempo && sent.args[1].number <= limber::sim::kMaxTempo);
       must(sent.args[2].number == time);
     }
   }

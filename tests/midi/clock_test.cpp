@@ -182,7 +182,7 @@ class ClockPlayer {
     for (int i = 0; i < std::lround(seconds * 1000); i++) {
       if (readings && now >= next_tick_) {
         next_tick_ = now + 1 / 60.0;
-        clock.update({beat, tempo, playing}, now);
+        clock.update({.beat = beat, .tempo = tempo, .playing = playing}, now);
       }
       (void)clock.send_due(now, [&](std::span<const std::uint8_t> bytes) {
         for (const std::uint8_t byte : bytes) sent.push_back({byte, beat});
@@ -231,6 +231,21 @@ TEST(MidiClockOut, StopsAndContinues) {
   EXPECT_EQ(player.sent[0].byte, 0xf2);
   EXPECT_EQ(player.sent[1].byte, 9) << "the next sixteenth after beat 2.2";
   EXPECT_EQ(player.sent[3].byte, 0xfb);
+}
+
+TEST(MidiClockOut, StartsAtBeat0) {
+  ClockPlayer player;
+  player.beat = -4;  // a program that leads the clock counts in
+  player.play(1.5);
+  EXPECT_TRUE(player.sent.empty()) << "MIDI has no position before the start";
+  player.play(1.5);
+  EXPECT_EQ(player.sent[0].byte, 0xfa);
+  EXPECT_EQ(player.count(0xfa) + player.count(0xfc), 1u);
+  EXPECT_NEAR(player.sent[1].beat, 0, 0.005);
+  EXPECT_EQ(player.count(0xf8), 48u);
+  player.beat = -2;
+  player.play(0.1);
+  EXPECT_EQ(player.sent.back().byte, 0xfc);
 }
 
 TEST(MidiClockOut, AJumpIsASongPosition) {

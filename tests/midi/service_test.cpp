@@ -230,6 +230,8 @@ TEST(MidiLearn, BadRequestsNameTheFault) {
   EXPECT_TRUE(sent(rig, "takes an address"));
   rig.send("/midi/forget", "/scene/wind");
   EXPECT_TRUE(sent(rig, "no control sets /scene/wind"));
+  rig.send("/midi/forget", "/scene/wind", 1e300);
+  EXPECT_TRUE(sent(rig, "no control sets /scene/wind"));
   EXPECT_EQ(rig.report().learning, "");
 }
 

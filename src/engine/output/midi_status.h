@@ -37,7 +37,6 @@ struct MidiReport {
   std::string file_error;  ///< Its error; the earlier map stays.
   std::string learning;    ///< The address whose control is awaited; empty: none.
   std::string last_event;  ///< "cc 7 = 64, channel 1, nanoKONTROL2"
-  std::string clock;       ///< State of the clocks; empty: none is used.
   bool operator==(const MidiReport&) const = default;
 };
 

@@ -104,7 +104,7 @@ Result<std::string> Mapping::forget(const std::vector<Arg>& args) {
   const std::string& address = args[0].text;
   MidiMap map = map_;
   const auto is_of = [&](const MidiEntry& entry) {
-    return entry.address == address && (args.size() < 2 || entry.component == static_cast<int>(args[1].number));
+    return entry.address == address && (args.size() < 2 || entry.component == args[1].number);
   };
   const std::size_t removed = std::erase_if(map, is_of);
   if (removed == 0) {

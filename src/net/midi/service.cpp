@@ -78,8 +78,9 @@ void MidiService::run() {
     system::PollEntry entry{.fd = wake_.fd()};
     (void)system::wait_ready({&entry, 1}, std::chrono::nanoseconds(std::max<std::int64_t>(0, next - now_())));
     wake_.clear();
-    // bytes wake it at once; the batches of a device that sends all the time have a distance
-    const std::int64_t early = times_.batch + kBatchInterval - now_();
+    // bytes wake it at once; the batches of a device that sends all the time have a distance. Pulses don't wait for it.
+    const std::int64_t batch = times_.batch + kBatchInterval;
+    const std::int64_t early = std::min(batch, next_pulse_.value_or(batch)) - now_();
     if (early > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(early));
   }
   clocks_.stop(devices_);

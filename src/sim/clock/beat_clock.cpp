@@ -23,7 +23,7 @@ constexpr double kCorrectionTime = 0.25;  // s, time constant of corrections
 constexpr double kMaxCorrection = 0.5;  // of the beats of a tick, so that a correction never stops or doubles the tempo
 constexpr double kSyncTimeout = 2;      // s without a sync after which the clock counts as not synchronized
 constexpr double kMaxBeat = 1e9;
-constexpr double kMaxTapInterval = 60 / BeatClock::kMinTempo;  // s
+constexpr double kMaxTapInterval = 60 / kMinTempo;  // s
 
 struct ClockProperties {
   const Property &tempo, &beats_per_bar, &playing, &beat;

@@ -18,8 +18,6 @@ class World;
 
 class BeatClock {
  public:
-  static constexpr double kMinTempo = 20, kMaxTempo = 999;  ///< Beats per minute.
-
   static const PropertyTable& table();
   explicit BeatClock(World& world);
 

@@ -1,7 +1,9 @@
-// ClockReading: the state of musical time, for snapshots. [any]
+// ClockReading: the state of musical time, for snapshots, and the limits of its tempo. [any]
 #pragma once
 
 namespace limber::sim {
+
+inline constexpr double kMinTempo = 20, kMaxTempo = 999;  ///< Beats per minute.
 
 struct ClockReading {
   double beat = 0;

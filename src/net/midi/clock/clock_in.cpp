@@ -6,9 +6,14 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/output/snapshot.h"
+
 namespace limber::midi {
 
 namespace {
+
+using sim::kMaxTempo;
+using sim::kMinTempo;
 
 constexpr double kMinPeriod = 60 / (kMaxTempo * kPulsesPerBeat);
 constexpr double kMaxPeriod = 60 / (kMinTempo * kPulsesPerBeat);

@@ -12,8 +12,6 @@
 namespace limber::midi {
 
 inline constexpr int kPulsesPerBeat = 24;
-inline constexpr double kMinTempo = 20;   ///< Beats per minute.
-inline constexpr double kMaxTempo = 999;  ///< Beats per minute.
 
 /// A line through the times of pulses: pulse i is expected at `begin` + `period` · i.
 struct PulseLine {

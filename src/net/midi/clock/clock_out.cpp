@@ -26,12 +26,12 @@ double ClockOut::beat_at(double now) const {
 }
 
 // Readings arrive at irregular times: the extrapolated beat approaches them.
-void ClockOut::update(const BeatReading& reading, double now) {
+void ClockOut::update(const sim::ClockReading& reading, double now) {
   const bool follows = reading_ && reading_->playing && reading.playing;
   const double distance = follows ? beat_at(now) - reading.beat : 0;
   offset_ = std::abs(distance) <= kJump ? kJitterShare * distance : 0;
   reading_ = reading;
-  reading_->tempo = std::clamp(reading.tempo, kMinTempo, kMaxTempo);
+  reading_->tempo = std::clamp(reading.tempo, sim::kMinTempo, sim::kMaxTempo);
   read_at_ = now;
 }
 
@@ -59,10 +59,15 @@ std::optional<double> ClockOut::send_due(double now, const Send& send) {
   }
   if (now - read_at_ > kMaxUnconfirmed) return std::nullopt;
   const double beat = beat_at(now);
+  const double beats_per_second = reading_->tempo / 60;
+  // MIDI has no position before beat 0
+  if (beat < -kJump) {
+    stop(send);
+    return now - (beat + kJump) / beats_per_second;
+  }
   const double next_beat = static_cast<double>(next_pulse_) / kPulsesPerBeat;
   if (running_ && std::abs(beat - next_beat) > kJump) stop(send);
   if (!running_) begin(beat, send);
-  const double beats_per_second = reading_->tempo / 60;
   const double period = 1 / (beats_per_second * kPulsesPerBeat);
   const auto due_at = [&] {
     const double due = now + (static_cast<double>(next_pulse_) / kPulsesPerBeat - beat) / beats_per_second;

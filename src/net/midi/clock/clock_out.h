@@ -7,14 +7,9 @@
 #include <optional>
 #include <span>
 
-namespace limber::midi {
+#include "engine/output/snapshot.h"
 
-/// The clock of the simulation at a moment.
-struct BeatReading {
-  double beat = 0;
-  double tempo = 120;  ///< Beats per minute.
-  bool playing = false;
-};
+namespace limber::midi {
 
 class ClockOut {
  public:
@@ -23,7 +18,7 @@ class ClockOut {
   static constexpr double kMaxUnconfirmed = 0.5;  ///< s: without readings, no pulses are sent after this time.
 
   /// Sets the newest reading. `now`: s.
-  void update(const BeatReading& reading, double now);
+  void update(const sim::ClockReading& reading, double now);
   /// Sends the next pulse if its time has come, and start, stop and position before it. Returns the time of the pulse
   /// after it, s; nothing while the clock is stopped.
   std::optional<double> send_due(double now, const Send& send);
@@ -36,7 +31,7 @@ class ClockOut {
   double beat_at(double now) const;
   void begin(double beat, const Send& send);
 
-  std::optional<BeatReading> reading_;
+  std::optional<sim::ClockReading> reading_;
   double read_at_ = 0;           // s
   double offset_ = 0;            // beats: corrects the reading's jitter, decays
   bool running_ = false;         // start was sent

@@ -8,7 +8,9 @@ void Clocks::accept(const MidiMessage& message, std::int64_t time) { in_.accept(
 void Clocks::update(const engine::Snapshot& snapshot, std::int64_t now) {
   if (snapshot.tick == tick_ && !snapshot.paused) return;
   tick_ = snapshot.tick;
-  out_.update({snapshot.clock.beat, snapshot.clock.tempo, snapshot.clock.playing && !snapshot.paused}, seconds(now));
+  sim::ClockReading reading = snapshot.clock;
+  reading.playing = reading.playing && !snapshot.paused;
+  out_.update(reading, seconds(now));
 }
 
 ClockOut::Send Clocks::sender(Devices& devices) {
