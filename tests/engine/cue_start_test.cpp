@@ -144,6 +144,25 @@ TEST_F(CueShow, EditsChangeTheFileAndTheList) {
   EXPECT_TRUE(sent(show, "/list/cues calm lift storm end"));
 }
 
+TEST_F(BeatCueShow, TheWaitingCueStaysTheSameInAnEditedList) {
+  Show show(options());
+  show.ticks(3);
+  send(show, "/clock/playing", 0);
+  send(show, "/cue/jump", "two");
+  EXPECT_EQ(show.read("/cue/waiting"), 2);
+  const auto edit = [&](const char* address, const char* cue) {
+    run_while_ticking(show, [&] { EXPECT_TRUE(show.engine.edit_cues({address, {Arg::of(cue)}}).ok()); });
+    show.ticks(1);
+  };
+  edit("/cue/add", "zero");
+  EXPECT_EQ(show.read("/cue/waiting"), 3) << "a cue was added before it";
+  edit("/cue/remove", "two");
+  EXPECT_EQ(show.read("/cue/waiting"), 0);
+  send(show, "/clock/playing", 1);
+  show.ticks(100);
+  EXPECT_EQ(current(show), 0) << "no other cue takes its place";
+}
+
 TEST_F(CueShow, EditsDoNotWriteThroughALink) {
   folder.write("other/real.cues.json", kCues);
   folder.remove("scripts/scene.cues.json");

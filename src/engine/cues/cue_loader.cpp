@@ -1,6 +1,7 @@
 // CueLoader: files, errors, and the exchange of the list between two ticks.
 #include "engine/cues/cue_loader.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -113,12 +114,18 @@ script::SourceFile CueLoader::file() const {
   return file_;
 }
 
-// Replaces the list, and records the number that the last cue has in it. `restart`: no cue has run.
+// Replaces the list, and records the numbers that the last cue and the waiting one have in it. `restart`: no cue has
+// run.
 void CueLoader::apply(const List& list, bool restart) {
   CuePlayer& cues = show_.cues;
+  const std::string waiting = cues.waiting_name();
   cues.set_list(list, file().path);
   CueState state = restart ? CueState{} : cues.state();
-  if (!restart) state.number = cues.position();
+  if (!restart) {
+    const auto found = std::ranges::find(*list, waiting, &Cue::name);
+    state.number = cues.position();
+    state.waiting = found == list->end() ? 0 : static_cast<std::uint32_t>(found - list->begin()) + 1;
+  }
   if (state == cues.state()) return;
   show_.input->record(message_of(state), {}, false);
   show_.set_cue_state(std::move(state));

@@ -59,6 +59,10 @@ std::uint32_t CuePlayer::position() const {
   return std::min(state_.number, count);
 }
 
+std::string CuePlayer::waiting_name() const {
+  return state_.waiting > 0 && state_.waiting <= list_->size() ? (*list_)[state_.waiting - 1].name : "";
+}
+
 Result<std::size_t> CuePlayer::target(const CueRequest& request) const {
   if (list_->empty()) {
     return Error{file_.empty() ? std::string("there are no cues; put them into a .cues.json file beside the scene")

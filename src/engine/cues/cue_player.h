@@ -47,6 +47,8 @@ class CuePlayer {
   void set_state(CueState state) { state_ = std::move(state); }
   /// Number of the cue that has run last in the present list, which may have been edited since; 0: none.
   std::uint32_t position() const;
+  /// Name of the cue that waits for its beat; empty: none.
+  std::string waiting_name() const;
 
   /// Returns the index of the cue that a request starts. Not for `pause`.
   Result<std::size_t> target(const CueRequest& request) const;
