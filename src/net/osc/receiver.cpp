@@ -36,7 +36,7 @@ std::vector<IpAddress> own_addresses() {
 
 std::size_t slot_of(const Endpoint& e) {
   const std::uint64_t ip = e.ip.low ^ e.ip.high * 0x9e3779b97f4a7c15U;
-  return static_cast<std::size_t>((ip * 2654435761U ^ e.port * 40503U) >> 7U);
+  return static_cast<std::size_t>((ip * 2654435761U ^ std::uint64_t{e.port} * 40503U) >> 7U);
 }
 
 }  // namespace

@@ -31,11 +31,11 @@ Quat rotation_of(const Vec3& turn) {
   return Quat(fixed::cos(angle / 2), axis.x, axis.y, axis.z);
 }
 
-Message message_of(std::string name, const PsnTracker& tracker) {
+Message message_of(const std::string& name, const PsnTracker& tracker) {
   const bool seen = !tracker.validity || *tracker.validity > 0;
   const Vec3 position = seen && tracker.position ? *tracker.position : Vec3(kAbsent);
   const Quat rotation = seen && tracker.rotation ? rotation_of(*tracker.rotation) : Quat(kAbsent, 0, 0, 0);
-  Message message{PsnInput::kAddress, {Arg::of(std::move(name))}};
+  Message message{PsnInput::kAddress, {Arg::of(name)}};
   for (const double number : {position.x, position.y, position.z, rotation.w, rotation.x, rotation.y, rotation.z,
                               tracker.validity ? static_cast<double>(*tracker.validity) : 1})
     message.args.push_back(Arg::of(number));
