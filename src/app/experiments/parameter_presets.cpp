@@ -2,6 +2,7 @@
 #include "app/experiments/parameter_presets.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,6 +24,17 @@ std::string free_name(const engine::PresetList& list, const std::string& name) {
     const bool used = std::ranges::any_of(list, [&](const auto& preset) { return preset->name == numbered; });
     if (!used) return numbered;
   }
+}
+
+// Converts a value of a preset; nothing if it isn't one of the axis. A choice corresponds by its word: presets that
+// were read from a file number their words differently.
+std::optional<double> value_on(const Axis& axis, const engine::PresetProperty& property, double value) {
+  const bool choice = property.type == PropertyType::choice;
+  if (choice != !axis.choices.empty() || property.width != 1) return {};
+  if (!choice) return value;
+  const auto word = std::ranges::find(axis.choices, property.labels[static_cast<std::size_t>(value)]);
+  if (word == axis.choices.end()) return {};
+  return static_cast<double>(word - axis.choices.begin());
 }
 
 }  // namespace
@@ -54,7 +66,10 @@ std::vector<double> parameter_values(const engine::Preset& preset, const std::ve
     if (layout == nullptr || schema.path(node) != kNode) continue;
     for (std::size_t i = 0; i < axes.size(); i++) {
       const int index = layout->find(axes[i].name);
-      if (index >= 0) values[i] = preset.values[entry.offset + layout->offsets[static_cast<std::size_t>(index)]];
+      if (index < 0) continue;
+      const auto at = static_cast<std::size_t>(index);
+      const double value = preset.values[entry.offset + layout->offsets[at]];
+      values[i] = value_on(axes[i], layout->properties[at], value).value_or(values[i]);
     }
   }
   return values;
@@ -69,6 +84,8 @@ Result<engine::PresetList> PresetStore::read() const {
 Result<std::vector<std::string>> PresetStore::add(const std::vector<Axis>& axes,
                                                   const std::vector<std::vector<double>>& values,
                                                   const std::string& name, std::string& notice) const {
+  if (const std::optional<std::string> fault = name_error(name))
+    return Error{fmt::format("'{}' can't be the name of presets: {}", printable(shortened(name, 40)), *fault)};
   engine::PresetFile presets(file, engine::PresetFile::write_access_for(file, locks, false));
   Result<engine::ParsedPresets> before = presets.load();  // a file that can't be read is backed up
   engine::PresetList list = before ? std::move(before->presets) : engine::PresetList();

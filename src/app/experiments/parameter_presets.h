@@ -16,7 +16,8 @@ std::shared_ptr<const engine::Preset> parameter_preset(const std::vector<experim
                                                        const std::vector<double>& values, const std::string& name,
                                                        const std::shared_ptr<const engine::PresetSchema>& shared);
 
-/// Returns the values that a preset has for the parameters; for those that it lacks, `otherwise`.
+/// Returns the values that a preset has for the parameters; for those that it lacks, or of which it
+/// has a value of another type or a word that is no choice, `otherwise`.
 std::vector<double> parameter_values(const engine::Preset& preset, const std::vector<experiments::Axis>& axes,
                                      const std::vector<double>& otherwise);
 
