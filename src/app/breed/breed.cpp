@@ -86,12 +86,11 @@ BreedSession::Options session_options(const BreedCommand& command, const Experim
 
 int run(const BreedCommand& command, BreedSession& session) {
   DisplayWatchdog watchdog;
-  const auto end = [](const char* reason) { end_program(fail(kMachineError, reason)); };
-  watchdog.start([&] { end("the display doesn't answer"); });
+  watchdog.start([] { end_program(kSuccess); });  // called only if the program is to end
   Result<std::unique_ptr<BreedWindow>> window =
       watchdog.call([&] { return BreedWindow::open(command.display, printable(command.common.scene)); });
   if (!window) return fail(kMachineError, fmt::format("breed needs a window: {}", window.error()));
-  Window::on_display_lost([&] { end("the display is lost"); });
+  Window::on_display_lost([] { end_program(fail(kMachineError, "the display is lost")); });
   while (!system::signal_arrived()) {
     if (!watchdog.call([&] { return (*window)->frame(session); })) break;
   }

@@ -2,9 +2,11 @@
 #include "app/breed/variation_worker.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -19,7 +21,10 @@
 #include "base/log/output.h"
 #include "base/system/clock.h"
 #include "base/system/file.h"
+#include "base/system/process.h"
 #include "base/system/signals.h"
+#include "base/system/thread.h"
+#include "base/system/wait.h"
 #include "engine/engine.h"
 #include "ui/render/offscreen.h"
 #include "ui/render/renderer.h"
@@ -69,18 +74,23 @@ class VariationPlayer {
  public:
   /// Opens the renderer. The error says why there are no images.
   Result<void> open(const DisplayOptions& display);
-  void set_up(WorkerSetup setup);
+  void set_up(WorkerSetup setup) {
+    setup_ = std::move(setup);
+    read_scene();
+  }
   void play(const Evaluation& evaluation);
   /// Returns the header, and draws the image.
   ImageHeader draw(const ImageRequest& request, render::Pixels& image);
 
  private:
+  void read_scene();
   void move_camera(const MouseMovement& all, int height, double now);
   void follow(bool follows);
 
   std::unique_ptr<render::OffscreenContext> context_;
   std::unique_ptr<render::Renderer> renderer_;
   Evaluator evaluator_;
+  WorkerSetup setup_;
   std::string setup_error_;
   std::uint64_t number_ = 0;
   std::unique_ptr<VariationRun> run_;
@@ -101,8 +111,8 @@ Result<void> VariationPlayer::open(const DisplayOptions& display) {
   return {};
 }
 
-void VariationPlayer::set_up(WorkerSetup setup) {
-  const Result<experiments::SceneInfo> scene = evaluator_.set_up(std::move(setup));
+void VariationPlayer::read_scene() {
+  const Result<experiments::SceneInfo> scene = evaluator_.set_up(setup_);
   setup_error_ = scene ? "" : scene.error();
 }
 
@@ -112,6 +122,7 @@ void VariationPlayer::play(const Evaluation& evaluation) {
   camera_ = {};
   moved_ = {};
   number_ = evaluation.number;
+  if (!setup_error_.empty()) read_scene();  // it may have been corrected
   if (setup_error_.empty()) run_ = std::make_unique<VariationRun>(evaluator_.options_to_play(evaluation));
 }
 
@@ -179,11 +190,24 @@ bool handle(VariationPlayer& player, const Result<void>& opened, const std::stri
   return true;
 }
 
+// Ends this process when `limber breed` has ended, even if the scene computes for long or the display doesn't answer.
+void end_with_input() {
+  std::thread watch;
+  const bool started = system::start_thread(watch, [] {
+    std::array<system::PollEntry, 1> input = {{{system::kStandardInput, false, false}}};
+    while (!system::wait_ready(input, std::nullopt)) {
+    }
+    end_program(kSuccess);
+  });
+  if (started) watch.detach();
+}
+
 }  // namespace
 
 int run_variation_worker(const DisplayOptions& display) {
   system::block_signals();
   start_output(OutputMode::batch);
+  end_with_input();
   VariationPlayer player;
   const Result<void> opened = player.open(display);
   InputLines lines;
