@@ -15,6 +15,8 @@
 
 namespace limber::app {
 
+static_assert(BreedSession::kCount == panel::BreedView::kCells);
+
 namespace {
 
 using experiments::Axis;
@@ -94,11 +96,24 @@ void BreedSession::perform(const panel::BreedAction& action) {
   play_all();
 }
 
+// Returns the latest one, or of those of that name; nullptr: there is none.
+const BreedSession::Kept* BreedSession::find_kept(const experiments::Breeding::Vector& individual,
+                                                  const std::string* name) const {
+  const auto found = std::ranges::find_if(kept_, [&](const Kept& each) {
+    return each.individual == individual && (name == nullptr || each.name == *name);
+  });
+  return found == kept_.end() ? nullptr : &*found;
+}
+
 void BreedSession::keep(const std::string& name) {
   std::vector<std::size_t> liked;
   std::vector<std::vector<double>> values;
   for (std::size_t i = 0; i < kCount; i++) {
     if (!breeding_.current().liked[i]) continue;
+    if (const Kept* const before = find_kept(breeding_.current().individuals[i], &name); before != nullptr) {
+      notify(fmt::format("{} is kept already", before->preset), false);
+      continue;
+    }
     liked.push_back(i);
     values.push_back(breeding_.values(i));
   }
@@ -107,7 +122,7 @@ void BreedSession::keep(const std::string& name) {
   const Result<std::vector<std::string>> names = options_.presets.add(breeding_.axes(), values, name, notice);
   if (!names) return notify(fmt::format("{}. Choose another file with --presets.", names.error()), true);
   for (std::size_t i = 0; i < liked.size(); i++)
-    kept_.emplace_back(breeding_.current().individuals[liked[i]], (*names)[i]);
+    kept_.insert(kept_.begin(), {breeding_.current().individuals[liked[i]], name, (*names)[i]});
   notify(fmt::format("Kept {} in {}{}{}", fmt::join(*names, ", "), printable(options_.presets.file),
                      notice.empty() ? "" : ". ", notice),
          false);
@@ -153,8 +168,8 @@ const panel::BreedView& BreedSession::view() {
     cell.values.clear();
     const std::vector<double> values = breeding_.values(i);
     for (std::size_t k = 0; k < values.size(); k++) cell.values.push_back(short_text(breeding_.axes()[k], values[k]));
-    const auto kept = std::ranges::find(kept_, now.individuals[i], &decltype(kept_)::value_type::first);
-    cell.preset = kept == kept_.end() ? "" : kept->second;
+    const Kept* const kept = find_kept(now.individuals[i]);
+    cell.preset = kept == nullptr ? "" : kept->preset;
   }
   for (std::size_t k = 0; k < view_.parameters.size(); k++) view_.parameters[k].held = breeding_.held(k);
   view_.generation = now.number;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "app/breed/variation_process.h"
@@ -35,13 +34,23 @@ class BreedSession {
   std::array<bool, kCount> read_images(double seconds);
 
   const render::Pixels& image(std::size_t variation) const { return processes_[variation].image(); }
+  /// True if a variation has failed before its first image.
+  bool failed(std::size_t variation) const { return processes_[variation].failed(); }
   /// What the window shows. The textures are left to it.
   const panel::BreedView& view();
   /// Shows a text.
   void notify(std::string text, bool failed);
 
  private:
+  // An individual that was stored as a preset.
+  struct Kept {
+    experiments::Breeding::Vector individual;
+    std::string name;  // that the user has given
+    std::string preset;
+  };
+
   void play_all();
+  const Kept* find_kept(const experiments::Breeding::Vector& individual, const std::string* name = nullptr) const;
   void keep(const std::string& name);
   bool operate(const panel::BreedAction& action);
 
@@ -51,7 +60,7 @@ class BreedSession {
   std::uint64_t runs_ = 0;  // number of the last evaluation
   MouseMovement mouse_;     // all movement of the cameras so far
   panel::BreedView view_;
-  std::vector<std::pair<experiments::Breeding::Vector, std::string>> kept_;  // individuals and their presets
+  std::vector<Kept> kept_;  // the latest first
 };
 
 }  // namespace limber::app

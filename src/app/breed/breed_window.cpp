@@ -57,7 +57,7 @@ bool BreedWindow::frame(BreedSession& session) {
   }
   for (const panel::InputEvent& event : window_->consume_events()) gui_->push(event);
   panel::BreedView view = session.view();
-  for (std::size_t i = 0; i < textures_.size(); i++) view.cells[i].texture = *textures_[i];
+  for (std::size_t i = 0; i < textures_.size(); i++) view.cells[i].texture = session.failed(i) ? 0 : *textures_[i];
   const double now = system::clock_seconds();
   const std::vector<panel::BreedAction> actions = gui_->frame(
       {static_cast<double>(width), static_cast<double>(height), window_->content_scale() * panel_scale_, now},

@@ -23,6 +23,7 @@ void VariationProcess::play(experiments::Evaluation evaluation) {
   evaluation_ = std::move(evaluation);
   sent_ = false;
   starts_ = 0;
+  has_image_ = false;
   error_.clear();
 }
 
@@ -92,6 +93,7 @@ bool VariationProcess::take_message() {
   if (current) error_ = std::move(header->error);
   const bool has_image = current && header->width > 0;
   if (has_image) {
+    has_image_ = true;
     image_.width = header->width;
     image_.height = header->height;
     image_.bytes.assign(received_.begin() + static_cast<std::ptrdiff_t>(end) + 1, received_.end());

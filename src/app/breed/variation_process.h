@@ -36,6 +36,8 @@ class VariationProcess {
   /// Descriptor to wait for; -1: the process doesn't run.
   int descriptor() const { return process_ == nullptr ? -1 : process_->output(); }
   const render::Pixels& image() const { return image_; }
+  /// True if the run has failed before its first image; image() is that of a run before, if any.
+  bool failed() const { return !error_.empty() && !has_image_; }
   /// Reason why the run doesn't play as it should; empty: it does.
   const std::string& error() const { return error_; }
 
@@ -48,11 +50,12 @@ class VariationProcess {
   experiments::WorkerSetup setup_;
   experiments::Evaluation evaluation_;
   std::unique_ptr<system::ChildProcess> process_;
-  bool set_up_ = false;  // the process has the setup
-  bool sent_ = true;     // the process has the evaluation
-  bool awaits_ = false;  // an answer
-  double asked_at_ = 0;  // time of the last request, s
-  int starts_ = 0;       // for this run
+  bool set_up_ = false;     // the process has the setup
+  bool sent_ = true;        // the process has the evaluation
+  bool awaits_ = false;     // an answer
+  double asked_at_ = 0;     // time of the last request, s
+  int starts_ = 0;          // for this run
+  bool has_image_ = false;  // image_ shows this run
   std::string received_;
   std::string error_;
   render::Pixels image_;
