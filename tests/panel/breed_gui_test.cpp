@@ -169,6 +169,23 @@ TEST(BreedGui, ButtonsAndKeysAct) {
   EXPECT_EQ(breed.actions[0].index, 8u);
 }
 
+TEST(BreedGui, HomeAndSpaceDoNotMoveTheKeyboardFocus) {
+  BreedFixture breed;
+  breed.click("breed.mutate");
+  EXPECT_EQ(breed.press(GuiKey::home), std::vector<Kind>{Kind::restart});
+  EXPECT_EQ(breed.press(GuiKey::home), std::vector<Kind>{Kind::restart});
+  EXPECT_EQ(breed.press(GuiKey::space), std::vector<Kind>{Kind::pause});
+  EXPECT_EQ(breed.press(GuiKey::m), std::vector<Kind>{Kind::mutate});
+}
+
+TEST(BreedGui, SpacePressesTheSelectedButton) {
+  BreedFixture breed;
+  breed.click("breed.mutate");
+  breed.press(GuiKey::right);
+  breed.press(GuiKey::left);
+  EXPECT_EQ(breed.press(GuiKey::space), std::vector<Kind>{Kind::mutate});
+}
+
 TEST(BreedGui, OnlyLikedOnesAreKept) {
   BreedFixture breed;
   EXPECT_TRUE(breed.click("breed.keep").empty());

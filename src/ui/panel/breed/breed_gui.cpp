@@ -67,8 +67,11 @@ void draw_label(ImDrawList& list, ImVec2 at, const std::string& text, ThemeColor
 void BreedGui::act(Kind kind, std::size_t index) { actions_.push_back({kind, index, amount_, name_}); }
 
 void BreedGui::handle_keys(const std::vector<KeyPress>& keys, const BreedView& view) {
-  if (ImGui::GetIO().WantTextInput) return;
+  const ImGuiIO& io = ImGui::GetIO();
+  if (io.WantTextInput) return;
   for (const KeyPress& press : keys) {
+    // during keyboard navigation these keys act on the selected widget
+    if (io.NavVisible && (press.key == GuiKey::space || press.key == GuiKey::home)) continue;
     const auto digit = static_cast<int>(press.key) - static_cast<int>(GuiKey::digit_1);
     if (press.mods == KeyMods{} && digit >= 0 && digit < static_cast<int>(BreedView::kCells))
       act(Kind::like, static_cast<std::size_t>(digit));
@@ -77,6 +80,15 @@ void BreedGui::handle_keys(const std::vector<KeyPress>& keys, const BreedView& v
     const bool any_liked = std::ranges::any_of(view.cells, &BreedCell::liked);
     if (key->kind != Kind::keep || any_liked) act(key->kind);
   }
+}
+
+// Begins the frame. Home doesn't begin the navigation by keyboard: it starts the variations again.
+void BreedGui::new_frame(const std::vector<KeyPress>& keys) {
+  ImGuiIO& io = ImGui::GetIO();
+  const bool home = !io.NavVisible && std::ranges::find(keys, GuiKey::home, &KeyPress::key) != keys.end();
+  if (home) io.ConfigFlags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+  ImGui::NewFrame();
+  io.ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
 }
 
 void BreedGui::lay_out(const GuiFrame& frame) {
@@ -97,7 +109,7 @@ std::vector<BreedAction> BreedGui::frame(const GuiFrame& frame, double text_size
   moves_camera_ = false;
   lay_out(frame);
   handle_keys(keys, view);
-  ImGui::NewFrame();
+  new_frame(keys);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);  // both windows cover the whole image
   draw_cells(view);
   draw_panel(view);
@@ -152,6 +164,11 @@ void BreedGui::draw_cell(const BreedCell& cell, std::size_t index) {
     list.AddImage(imgui::texture_id(cell.texture), low, high);
   } else {
     list.AddRectFilled(low, high, packed_color(ThemeColor::panel));
+    constexpr const char* kStarting = "starting …";
+    const ImVec2 size = ImGui::CalcTextSize(kStarting);
+    if (cell.error.empty())
+      list.AddText({(low.x + high.x - size.x) / 2, (low.y + high.y - size.y) / 2}, packed_color(ThemeColor::secondary),
+                   kStarting);
   }
   const auto border = static_cast<float>((cell.liked ? 3 : 1) * host_.scale());
   const ThemeColor color = cell.liked ? ThemeColor::accent : hovered ? ThemeColor::secondary : ThemeColor::line;
@@ -169,7 +186,8 @@ void BreedGui::draw_error(const std::string& text, const ImVec2& low, const ImVe
   if (text.empty()) return;
   constexpr std::size_t kMaxLines = 4;
   const ImVec2 padding = ImGui::GetStyle().FramePadding;
-  std::vector<std::string> lines = wrapped(text, high.x - low.x - padding.x, text_width);
+  const std::string first = text.substr(0, text.find('\n'));  // an excerpt of the script may follow
+  std::vector<std::string> lines = wrapped(first, high.x - low.x - padding.x, text_width);
   lines.resize(std::min(lines.size(), kMaxLines));
   float y = high.y;
   for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
@@ -178,12 +196,17 @@ void BreedGui::draw_error(const std::string& text, const ImVec2& low, const ImVe
   }
 }
 
-bool BreedGui::button(const char* label, const char* name, const char* hint, bool enabled) {
-  ImGui::BeginDisabled(!enabled);
-  const bool pressed = ImGui::Button(label, {(ImGui::GetContentRegionAvail().x), 0});
+// The label shows the key if it fits.
+bool BreedGui::button(const Button& button) {
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float label_width = width - 2 * ImGui::GetStyle().FramePadding.x;
+  std::string label = fmt::format("{}  {}", button.label, button.key);
+  if (text_width(label) > label_width) label = elided(button.label, label_width, text_width);
+  ImGui::BeginDisabled(!button.enabled);
+  const bool pressed = ImGui::Button(fmt::format("{}###{}", label, button.name).c_str(), {width, 0});
   ImGui::EndDisabled();
-  names_.add(name);
-  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", hint);
+  names_.add(button.name);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s (%s)", button.hint, button.key);
   return pressed;
 }
 
@@ -218,30 +241,23 @@ void BreedGui::draw_operations(const BreedView& view) {
   names_.add("breed.amount");
   if (ImGui::IsItemHovered())
     ImGui::SetTooltip("How much Mutate changes: standard deviation, in percent of each parameter's range");
-  struct Operation {
-    const char* label;
-    const char* name;
-    const char* hint;
-    Kind kind;
-    bool enabled = true;
-  };
-  const std::array<Operation, 8> operations = {{
-      {"Mutate  M", "breed.mutate", "Replace the others with variations of the liked ones", Kind::mutate},
-      {"Cross  C", "breed.cross", "Replace the others with mixes of two liked ones", Kind::cross},
-      {"Undo  Ctrl+Z", "breed.undo", "Return to the generation before", Kind::undo, view.can_undo},
-      {"Redo  Ctrl+Y", "breed.redo", "Go to the generation after", Kind::redo, view.can_redo},
-      {"Random  R", "breed.random", "Replace all that are not liked with random ones", Kind::randomize},
-      {view.paused ? "Play  Space###pause" : "Pause  Space###pause", "breed.pause", "Stop the time, or go on",
-       Kind::pause},
-      {"Start again  Home", "breed.restart", "Start all variations again at the same time", Kind::restart},
-      {view.following ? "Don't follow  F###follow" : "Follow  F###follow", "breed.follow",
-       "Move the cameras with the first body that has joints", Kind::follow},
+  const std::array<std::pair<Button, Kind>, 8> operations = {{
+      {{"Mutate", "M", "breed.mutate", "Replace the others with variations of the liked ones"}, Kind::mutate},
+      {{"Cross", "C", "breed.cross", "Replace the others with mixes of two liked ones"}, Kind::cross},
+      {{"Undo", "Ctrl+Z", "breed.undo", "Return to the generation before", view.can_undo}, Kind::undo},
+      {{"Redo", "Ctrl+Y", "breed.redo", "Go to the generation after", view.can_redo}, Kind::redo},
+      {{"Random", "R", "breed.random", "Replace all that are not liked with random ones"}, Kind::randomize},
+      {{view.paused ? "Play" : "Pause", "Space", "breed.pause", "Stop the time, or go on"}, Kind::pause},
+      {{"Start again", "Home", "breed.restart", "Start all variations again at the same time"}, Kind::restart},
+      {{view.following ? "Don't follow" : "Follow", "F", "breed.follow",
+        "Move the cameras with the first body that has joints"},
+       Kind::follow},
   }};
   if (!ImGui::BeginTable("##operations", 2, ImGuiTableFlags_SizingStretchSame | ImGuiTableFlags_NoSavedSettings))
     return;
-  for (const Operation& operation : operations) {
+  for (const auto& [operation, kind] : operations) {
     ImGui::TableNextColumn();
-    if (button(operation.label, operation.name, operation.hint, operation.enabled)) act(operation.kind);
+    if (button(operation)) act(kind);
   }
   ImGui::EndTable();
 }
@@ -255,7 +271,7 @@ void BreedGui::draw_keep(const BreedView& view) {
   if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("Name of the presets; a number is added");
   ImGui::SameLine();
   const bool any_liked = std::ranges::any_of(view.cells, &BreedCell::liked);
-  if (button("Keep  K", "breed.keep", "Store the liked ones as presets of the scene", any_liked && !name_.empty()))
+  if (button({"Keep", "K", "breed.keep", "Store the liked ones as presets of the scene", any_liked && !name_.empty()}))
     act(Kind::keep);
 }
 

@@ -86,7 +86,16 @@ class BreedGui {
   const WidgetNames& names() const { return names_; }
 
  private:
+  struct Button {
+    const char* label;
+    const char* key;
+    const char* name;  // of the widget
+    const char* hint;
+    bool enabled = true;
+  };
+
   void handle_keys(const std::vector<KeyPress>& keys, const BreedView& view);
+  static void new_frame(const std::vector<KeyPress>& keys);
   void lay_out(const GuiFrame& frame);
   void draw_cells(const BreedView& view);
   PanelRect rect_of(std::size_t index) const;
@@ -98,7 +107,7 @@ class BreedGui {
   void draw_keep(const BreedView& view);
   void draw_parameters(const BreedView& view);
   void draw_parameter(const BreedView& view, std::size_t index);
-  bool button(const char* label, const char* name, const char* hint, bool enabled = true);
+  bool button(const Button& button);
   void act(BreedAction::Kind kind, std::size_t index = 0);
 
   GuiHost host_;
