@@ -7,7 +7,9 @@
 #include "app/breed/variation_process.h"
 #include "app/breed/variation_worker.h"
 #include "app/display.h"
+#include "base/system/child_process.h"
 #include "base/system/clock.h"
+#include "base/system/file.h"
 #include "engine/presets/text.h"
 
 namespace limber::app::test {
@@ -122,6 +124,36 @@ TEST(Breed, ReportsWhatDoesNotPlay) {
   EXPECT_EQ(nonsense.error(), "the simulation answers nonsense");
 }
 
+TEST(Breed, PlaysASceneThatWasCorrected) {
+  const TempFolder folder;
+  const std::string scene = folder.file("ball.lua", "nonsense(");
+  VariationProcess process(variation_command(), {scene, 0, {"place", "size"}});
+  process.play({1, 1, {0, 0}});
+  EXPECT_TRUE(image_of(process).bytes.empty());
+  EXPECT_TRUE(process.failed());
+  folder.file("ball.lua", kBall);
+  process.play({2, 1, {0, 0}});
+  EXPECT_EQ(image_of(process).width, 64) << process.error();
+  folder.file("ball.lua", "nonsense(");
+  process.play({3, 1, {0, 0}});
+  EXPECT_TRUE(image_of(process).bytes.empty());
+  EXPECT_TRUE(process.failed());  // its image is that of the run before
+}
+
+/// It doesn't finish the computation, which would take seconds, and doesn't answer.
+TEST(Breed, AProcessEndsWithItsInput) {
+  const TempFolder folder;
+  const experiments::WorkerSetup setup{folder.file("loop.lua", "while true do end"), 0, {}};
+  ImageRequest request;
+  request.width = request.height = 8;
+  system::ChildProcess process;
+  ASSERT_EQ(process.start_quietly(variation_command()), 0);
+  EXPECT_TRUE(process.write(experiments::encode(setup) + "\n" + encode(request) + "\n"));
+  EXPECT_TRUE(process.finish());
+  char byte = 0;
+  EXPECT_EQ(system::read_some(process.output(), &byte, 1), 0);
+}
+
 TEST(Breed, GivesUpAProcessThatDoesNotAnswer) {
   const PipeSignalIgnored ignored;
   VariationProcess process({"sleep", "1000"}, {});
@@ -172,6 +204,56 @@ TEST(Breed, KeepsTheLikedOnesAsPresets) {
   EXPECT_EQ(presets->presets[2]->name, "bred_3");
   const std::string place = session.view().cells[8].values[0];
   EXPECT_EQ(fmt::format("{:.4g}", presets->presets[2]->values[0]), place);
+}
+
+TEST(Breed, KeepsAVariationOnce) {
+  const TempFolder folder;
+  BreedSession session = session_in(folder);
+  session.perform(action(Kind::like, 2));
+  session.perform(action(Kind::keep));
+  session.perform(action(Kind::keep));
+  EXPECT_EQ(session.view().notice, "bred_1 is kept already");
+  session.perform(action(Kind::like, 3));
+  session.perform(action(Kind::keep));
+  EXPECT_EQ(session.view().cells[3].preset, "bred_2");
+  BreedAction other = action(Kind::keep);
+  other.name = "calm";
+  session.perform(other);
+  EXPECT_EQ(session.view().cells[2].preset, "calm_1");
+  EXPECT_EQ(session.view().cells[3].preset, "calm_2");
+}
+
+TEST(Breed, RejectsANameThatPresetsCannotHave) {
+  const TempFolder folder;
+  BreedSession session = session_in(folder);
+  session.perform(action(Kind::like, 2));
+  for (const std::string& name : {std::string(), std::string(1000, 'x'), std::string("a\tb")}) {
+    BreedAction keep = action(Kind::keep);
+    keep.name = name;
+    session.perform(keep);
+    EXPECT_TRUE(session.view().failed) << name;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() + "/ball.presets.json"));
+  }
+}
+
+TEST(Breed, PresetsFromAFileHaveTheirValues) {
+  const TempFolder folder;
+  const std::vector<Axis> axes = {{"place", -2, 2, {}, false, {}, false},
+                                  {"size", 0, 2, {0, 1, 2}, true, {"small", "medium", "large"}, false},
+                                  {"on", 0, 1, {0, 1}, true, {}, true}};
+  const PresetStore store{folder.path() + "/a.presets.json", ""};
+  const std::vector<std::vector<double>> values = {{0.25, 2, 0}, {-2, 1, 1}};
+  std::string notice;
+  ASSERT_TRUE(store.add(axes, values, "bred", notice));
+  const Result<engine::PresetList> presets = store.read();
+  ASSERT_TRUE(presets);
+  ASSERT_EQ(presets->size(), 2u);
+  for (std::size_t i = 0; i < 2; i++) EXPECT_EQ(parameter_values(*(*presets)[i], axes, {0, 0, 0}), values[i]) << i;
+  // a word that is no choice, and a word in place of a number
+  std::vector<Axis> others = axes;
+  others[1].choices = {"tiny", "huge"};
+  others[2].choices = {"no", "yes"};
+  EXPECT_EQ(parameter_values(*(*presets)[0], others, {1, 1, 1}), (std::vector<double>{0.25, 1, 1}));
 }
 
 TEST(Breed, ReportsAFileThatCannotBeWritten) {
