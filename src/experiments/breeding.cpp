@@ -108,7 +108,7 @@ bool Breeding::mutate(double amount) {
   std::size_t turn = 0;  // the liked ones take turns
   return next_generation([&](std::size_t individual, Random& random) {
     const std::size_t parent = liked.empty() ? individual : liked[turn++ % liked.size()];
-    return mutated(current().individuals[parent], std::clamp(amount, kMinAmount, kMaxAmount), random);
+    return mutated(current().individuals[parent], std::clamp(amount, 0.0, 1.0), random);
   });
 }
 

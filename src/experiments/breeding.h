@@ -17,9 +17,7 @@ namespace limber::experiments {
 class Breeding {
  public:
   using Vector = std::vector<double>;
-  static constexpr std::size_t kCount = 9;    ///< Individuals of a generation.
-  static constexpr double kMinAmount = 0.01;  ///< Range of `amount`.
-  static constexpr double kMaxAmount = 0.5;
+  static constexpr std::size_t kCount = 9;             ///< Individuals of a generation.
   static constexpr double kBeyond = 0.25;              ///< How far a crossed position may lie outside of its parents.
   static constexpr std::size_t kMaxGenerations = 500;  ///< Generations that undo() can return to.
 
@@ -46,8 +44,8 @@ class Breeding {
   bool held(std::size_t axis) const { return held_[axis]; }
 
   // Operations replace the individuals that are not liked. They return false, and do nothing, if all are liked.
-  /// Replaces each by a liked one (without any: by itself) with a normal deviation of `amount` along each axis. A
-  /// listed axis takes another of its values with a probability of `amount`.
+  /// Replaces each by a liked one (without any: by itself) with a normal deviation of `amount`, 0 to 1, along each
+  /// axis. A listed axis takes another of its values with a probability of `amount`.
   bool mutate(double amount);
   /// Replaces each by a mix of two liked ones: a random position between and slightly beyond both along each axis
   /// (BLX, Eshelman, Schaffer 1993). With one liked individual the other parent is any other one, without any both are.

@@ -86,7 +86,7 @@ Result<std::vector<std::string>> PresetStore::add(const std::vector<Axis>& axes,
                                                   const std::string& name, std::string& notice) const {
   if (const std::optional<std::string> fault = name_error(name))
     return Error{fmt::format("'{}' can't be the name of presets: {}", printable(shortened(name, 40)), *fault)};
-  engine::PresetFile presets(file, engine::PresetFile::write_access_for(file, locks, false));
+  engine::PresetFile presets(file, engine::PresetFile::write_access_for(file, locks, true));
   Result<engine::ParsedPresets> before = presets.load();  // a file that can't be read is backed up
   engine::PresetList list = before ? std::move(before->presets) : engine::PresetList();
   std::vector<std::string> names;

@@ -132,9 +132,10 @@ void BreedGui::draw_cells(const BreedView& view) {
 }
 
 PanelRect BreedGui::rect_of(std::size_t index) const {
-  const auto column = static_cast<double>(index % 3);
-  const auto row = static_cast<double>(index / 3);
-  return {cell_.x + column * (cell_.width + gap_), cell_.y + row * (cell_.height + gap_), cell_.width, cell_.height};
+  const std::size_t column = index % 3;
+  const std::size_t row = index / 3;
+  return {cell_.x + static_cast<double>(column) * (cell_.width + gap_),
+          cell_.y + static_cast<double>(row) * (cell_.height + gap_), cell_.width, cell_.height};
 }
 
 // A click likes the cell; a drag moves the cameras.
