@@ -106,6 +106,8 @@ const BreedSession::Kept* BreedSession::find_kept(const experiments::Breeding::V
 }
 
 void BreedSession::keep(const std::string& name) {
+  if (std::ranges::none_of(breeding_.current().liked, [](bool liked) { return liked; }))
+    return notify("None is liked. Click those to keep.", true);
   std::vector<std::size_t> liked;
   std::vector<std::vector<double>> values;
   for (std::size_t i = 0; i < kCount; i++) {

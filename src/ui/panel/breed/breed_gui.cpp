@@ -66,7 +66,7 @@ void draw_label(ImDrawList& list, ImVec2 at, const std::string& text, ThemeColor
 
 void BreedGui::act(Kind kind, std::size_t index) { actions_.push_back({kind, index, amount_, name_}); }
 
-void BreedGui::handle_keys(const std::vector<KeyPress>& keys, const BreedView& view) {
+void BreedGui::handle_keys(const std::vector<KeyPress>& keys) {
   const ImGuiIO& io = ImGui::GetIO();
   if (io.WantTextInput) return;
   for (const KeyPress& press : keys) {
@@ -76,9 +76,7 @@ void BreedGui::handle_keys(const std::vector<KeyPress>& keys, const BreedView& v
     if (press.mods == KeyMods{} && digit >= 0 && digit < static_cast<int>(BreedView::kCells))
       act(Kind::like, static_cast<std::size_t>(digit));
     const auto* const key = std::ranges::find(kKeys, press, &BreedKey::press);
-    if (key == kKeys.end()) continue;
-    const bool any_liked = std::ranges::any_of(view.cells, &BreedCell::liked);
-    if (key->kind != Kind::keep || any_liked) act(key->kind);
+    if (key != kKeys.end()) act(key->kind);
   }
 }
 
@@ -108,7 +106,7 @@ std::vector<BreedAction> BreedGui::frame(const GuiFrame& frame, double text_size
   names_.clear();
   moves_camera_ = false;
   lay_out(frame);
-  handle_keys(keys, view);
+  handle_keys(keys);
   new_frame(keys);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0);  // both windows cover the whole image
   draw_cells(view);

@@ -94,7 +94,7 @@ class BreedGui {
     bool enabled = true;
   };
 
-  void handle_keys(const std::vector<KeyPress>& keys, const BreedView& view);
+  void handle_keys(const std::vector<KeyPress>& keys);
   static void new_frame(const std::vector<KeyPress>& keys);
   void lay_out(const GuiFrame& frame);
   void draw_cells(const BreedView& view);
