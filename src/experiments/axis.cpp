@@ -177,6 +177,7 @@ Result<Axis> whole_axis(const ParameterInfo& parameter) {
 Result<std::vector<Axis>> make_axes(const std::vector<AxisText>& texts, const std::vector<ParameterInfo>& parameters) {
   std::vector<Axis> axes;
   std::vector<std::string> names;
+  names.reserve(parameters.size());
   for (const ParameterInfo& parameter : parameters) names.push_back(parameter.name);
   for (const AxisText& text : texts) {
     const auto found = std::ranges::find_if(
