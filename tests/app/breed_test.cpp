@@ -79,6 +79,21 @@ TEST(Breed, AProcessPlaysAVariation) {
   EXPECT_EQ(process.error(), "");
 }
 
+TEST(Breed, AnImageOfTheRunBeforeIsSkipped) {
+  const TempFolder folder;
+  VariationProcess process(variation_command(), {folder.file("ball.lua", kBall), 0, {"place", "size"}});
+  process.play({1, 1, {1, 0}});
+  const render::Pixels right = image_of(process);
+  process.play({2, 1, {-1, 0}});
+  EXPECT_NE(image_of(process).bytes, right.bytes);
+  ImageRequest request;
+  request.width = right.width;
+  request.height = right.height;
+  process.request(request, system::clock_seconds());
+  process.play({3, 1, {1, 0}});
+  EXPECT_EQ(image_of(process).bytes, right.bytes);
+}
+
 TEST(Breed, AProcessThatDiesIsStartedAgain) {
   const PipeSignalIgnored ignored;
   const TempFolder folder;
