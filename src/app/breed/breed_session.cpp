@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "base/plural.h"
 #include "base/system/clock.h"
 #include "base/system/wait.h"
 #include "base/text.h"
@@ -122,7 +121,7 @@ void BreedSession::keep(const std::string& name) {
   if (liked.empty()) return;
   std::string notice;
   const Result<std::vector<std::string>> names = options_.presets.add(breeding_.axes(), values, name, notice);
-  if (!names) return notify(fmt::format("{}. Choose another file with --presets.", names.error()), true);
+  if (!names) return notify(names.error(), true);
   for (std::size_t i = 0; i < liked.size(); i++)
     kept_.insert(kept_.begin(), {breeding_.current().individuals[liked[i]], name, (*names)[i]});
   notify(fmt::format("Kept {} in {}{}{}", fmt::join(*names, ", "), printable(options_.presets.file),

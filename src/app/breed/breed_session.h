@@ -1,5 +1,5 @@
-// BreedSession: the variations of `limber breed`, their processes and presets, and what the user's actions do. It knows
-// no window. [main]
+// BreedSession: the variations of `limber breed`, with their processes and presets. It carries out the user's actions
+// and is independent of the window. [main]
 #pragma once
 
 #include <array>
@@ -36,10 +36,8 @@ class BreedSession {
   const render::Pixels& image(std::size_t variation) const { return processes_[variation].image(); }
   /// True if a variation has failed before its first image.
   bool failed(std::size_t variation) const { return processes_[variation].failed(); }
-  /// What the window shows. The textures are left to it.
+  /// Returns the content of the window, without textures.
   const panel::BreedView& view();
-  /// Shows a text.
-  void notify(std::string text, bool failed);
 
  private:
   // An individual that was stored as a preset.
@@ -49,6 +47,7 @@ class BreedSession {
     std::string preset;
   };
 
+  void notify(std::string text, bool failed);
   void play_all();
   const Kept* find_kept(const experiments::Breeding::Vector& individual, const std::string* name = nullptr) const;
   void keep(const std::string& name);

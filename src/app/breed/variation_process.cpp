@@ -1,4 +1,4 @@
-// The child process, what it is sent, and its answers.
+// The child process: its start, the requests to it and its answers.
 #include "app/breed/variation_process.h"
 
 #include <array>

@@ -20,7 +20,7 @@ class VariationProcess {
   static constexpr double kAnswerLimit = 30;  ///< s after which a process counts as stuck.
   static constexpr int kMaxStarts = 3;        ///< Starts for one run.
 
-  /// `command`: the program and its arguments. `setup`: what all runs share.
+  /// `command`: the program and its arguments. `setup`: of all runs.
   VariationProcess(std::vector<std::string> command, experiments::WorkerSetup setup)
       : command_(std::move(command)), setup_(std::move(setup)) {}
 
@@ -28,7 +28,7 @@ class VariationProcess {
   void play(experiments::Evaluation evaluation);
   /// Requests an image, unless one is on its way. `now` in s.
   void request(const ImageRequest& request, double now);
-  /// Reads what has arrived. Returns true if there is a new image of the run.
+  /// Reads the bytes that have arrived. Returns true if they complete an image of the run.
   bool read();
   /// Gives up a process that hasn't answered for kAnswerLimit.
   void check(double now);

@@ -23,6 +23,7 @@
 #include "base/system/file.h"
 #include "base/system/process.h"
 #include "base/system/signals.h"
+#include "base/system/standard_output.h"
 #include "base/system/thread.h"
 #include "base/system/wait.h"
 #include "engine/engine.h"
@@ -35,8 +36,6 @@ namespace {
 
 using experiments::Evaluation;
 using experiments::WorkerSetup;
-
-constexpr int kStandardOutput = 1;
 
 /// One run of the scene, on a thread of its own.
 class VariationRun {
@@ -52,7 +51,7 @@ class VariationRun {
   void pause(bool paused) {
     if (std::exchange(paused_, paused) != paused) send({{paused ? "/transport/pause" : "/transport/play", {}}});
   }
-  /// Returns what is wrong with it; empty: nothing.
+  /// Returns the reason why it doesn't play as it should; empty: it does.
   std::string error() {
     if (!thread_.started()) return {};
     if (!thread_.result()) return thread_.result().error();
@@ -176,9 +175,9 @@ bool handle(VariationPlayer& player, const Result<void>& opened, const std::stri
     } else {
       header.error = opened.error();
     }
-    return system::write_all(kStandardOutput, encode(header) + "\n") &&
-           system::write_all(kStandardOutput, {reinterpret_cast<const char*>(image.bytes.data()),
-                                               header.width > 0 ? image.bytes.size() : 0});
+    return system::write_all(system::kStandardOutput, encode(header) + "\n") &&
+           system::write_all(system::kStandardOutput, {reinterpret_cast<const char*>(image.bytes.data()),
+                                                       header.width > 0 ? image.bytes.size() : 0});
   }
   std::optional<experiments::Request> request = experiments::decode_request(line);
   if (!request) return false;

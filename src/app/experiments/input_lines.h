@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/system/file.h"
+#include "base/system/process.h"
 
 namespace limber::app {
 
@@ -21,14 +22,13 @@ class InputLines {
         return line;
       }
       std::array<char, 1 << 14> buffer;
-      const std::ptrdiff_t size = system::read_some(kStandardInput, buffer.data(), buffer.size());
+      const std::ptrdiff_t size = system::read_some(system::kStandardInput, buffer.data(), buffer.size());
       if (size <= 0) return {};
       text_.append(buffer.data(), static_cast<std::size_t>(size));
     }
   }
 
  private:
-  static constexpr int kStandardInput = 0;
   std::string text_;
 };
 

@@ -95,7 +95,7 @@ Result<std::vector<std::string>> PresetStore::add(const std::vector<Axis>& axes,
     list.push_back(parameter_preset(axes, each, names.back(), nullptr));
   }
   if (const Result<void> saved = presets.save(list, notice); !saved)
-    return Error{fmt::format("{}: {}", printable(file), saved.error())};
+    return Error{fmt::format("{}: {}; choose another file with --presets", printable(file), saved.error())};
   return names;
 }
 

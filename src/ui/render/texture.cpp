@@ -39,17 +39,26 @@ model::Image halved(const model::Image& image) {
   return out;
 }
 
+namespace {
+
+// Binds the texture and replaces its image.
+void upload(const GlTexture& texture, int format, int width, int height, const std::uint8_t* pixels, int wrap) {
+  glBindTexture(GL_TEXTURE_2D, *texture);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTexImage2D(GL_TEXTURE_2D, 0, format, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap);
+}
+
+}  // namespace
+
 GlTexture make_texture(const model::Image& image, int max_side) {
   if (image.width > max_side || image.height > max_side) return make_texture(halved(image), max_side);
   GlTexture texture = GlTexture::make();
-  glBindTexture(GL_TEXTURE_2D, *texture);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_SRGB8_ALPHA8, image.width, image.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               image.pixels.data());
+  upload(texture, GL_SRGB8_ALPHA8, image.width, image.height, image.pixels.data(), GL_REPEAT);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_REPEAT);
   constexpr float kAnisotropy = 4;
   if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
     glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, kAnisotropy);
@@ -59,14 +68,7 @@ GlTexture make_texture(const model::Image& image, int max_side) {
 
 void update_texture(GlTexture& texture, const Pixels& pixels) {
   if (!texture) texture = GlTexture::make();
-  glBindTexture(GL_TEXTURE_2D, *texture);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, pixels.width, pixels.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               pixels.bytes.data());
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+  upload(texture, GL_RGBA8, pixels.width, pixels.height, pixels.bytes.data(), GL_CLAMP_TO_EDGE);
 }
 
 }  // namespace limber::render

@@ -1,5 +1,5 @@
 // BreedGui: the user interface of `limber breed`: nine variations side by side, and the panel with their parameters and
-// the operations. It holds no variations: it shows a BreedView and returns what the user wants.
+// the operations. It holds no variations: it shows a BreedView and returns the user's actions.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ struct ImVec2;
 
 namespace limber::panel {
 
-/// What a cell shows.
+/// The content of a cell.
 struct BreedCell {
   std::uint32_t texture = 0;  ///< Name of an OpenGL texture; 0: there is no image yet.
   bool liked = false;
@@ -32,7 +32,7 @@ struct BreedParameter {
   bool held = false;
 };
 
-/// What the window shows.
+/// The content of the window.
 struct BreedView {
   static constexpr std::size_t kCells = 9;
   std::array<BreedCell, kCells> cells;
@@ -41,11 +41,11 @@ struct BreedView {
   bool can_undo = false, can_redo = false;
   bool paused = false;
   bool following = false;  ///< The cameras follow the creatures.
-  std::string notice;      ///< What has happened last.
+  std::string notice;      ///< The latest message to the user.
   bool failed = false;     ///< The notice is an error.
 };
 
-/// What the user wants.
+/// An action of the user.
 struct BreedAction {
   enum class Kind : std::uint8_t {
     like,
