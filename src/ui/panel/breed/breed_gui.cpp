@@ -276,14 +276,14 @@ void BreedGui::draw_keep(const BreedView& view) {
 
 void BreedGui::draw_parameters(const BreedView& view) {
   ImGui::Separator();
-  ImGui::TextDisabled("Values of %d; a tick holds one", static_cast<int>(shown_ + 1));
+  ImGui::TextDisabled("Values of %d; a check mark holds one", static_cast<int>(shown_ + 1));
   if (ImGui::BeginChild("##parameters", {}, false, ImGuiWindowFlags_NavFlattened)) {
     for (std::size_t i = 0; i < view.parameters.size(); i++) draw_parameter(view, i);
   }
   ImGui::EndChild();
 }
 
-// A tick that holds it, its name, and the value of the shown cell as a bar.
+// A check box that holds it, its name, and the value of the shown cell as a bar.
 void BreedGui::draw_parameter(const BreedView& view, std::size_t index) {
   const BreedParameter& parameter = view.parameters[index];
   const BreedCell& cell = view.cells[shown_];
