@@ -14,6 +14,7 @@
 #include "net/midi/controls.h"
 #include "net/midi/learner.h"
 #include "net/midi/map.h"
+#include "sim/clock/clock_reading.h"
 
 namespace {
 
