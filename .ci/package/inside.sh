@@ -80,18 +80,29 @@ check python_has_its_version sh -c 'python3 -c "import limber; print(limber.__ve
 check python_removes apt-get purge -y -q python3-limber
 check python_leaves_nothing test ! -e /usr/lib/python3/dist-packages/limber
 
-# ---- the modules for MPI, without MPI and with it
+# ---- the modules for MPI and pagmo, without these libraries and with them
 without_mpi() {
   ! PMI_RANK=0 PMI_SIZE=1 limber sweep /usr/share/limber/scripts/gait.lua --samples 1 --out none.csv 2>none.log || return
   cat none.log
   grep -q "/usr/lib/limber/limber-mpi-mpich.so can't be loaded: libmpich.*Install this MPI on the node" none.log
 }
 with_mpi() { [ "$(mpi/run "$1" openmpi_table mpich_table | tee /dev/stderr | grep -c '^ok ')" = 2 ]; }
+swarm() {
+  limber evolve /usr/share/limber/scripts/gait.lua --maximize speed --algorithm pso --generations 2 --population 4 \
+    --duration 1 --out swarm "$@" 2>swarm.log
+}
+without_pagmo() {
+  ! swarm || return
+  cat swarm.log
+  grep -q "/usr/lib/limber/limber-pagmo.so can't be loaded: libpagmo.*Install pagmo" swarm.log
+}
 check names_the_missing_mpi without_mpi
+check names_the_missing_pagmo without_pagmo
 
 # ---- integration with desktops, shells, man pages
 check installs_tools install_debian $(cat tools)
 check sweeps_with_mpi with_mpi /usr/bin/limber
+check searches_with_pagmo swarm
 check tarball_sweeps_with_mpi with_mpi "$tarball"
 check lintian lintian --allow-root --fail-on error,warning "$deb"
 check lintian_python lintian --allow-root --fail-on error ./python3-limber_*.deb

@@ -44,13 +44,14 @@ install_licences() {
   done
 }
 
-# Builds the modules for MPI, which a build without MPI's headers has left out. The packages don't depend on MPI.
-build_mpi() {
+# Builds the modules for MPI and pagmo, which a build without their headers has left out. The packages depend on neither.
+build_modules() {
   mkdir -p "$package_out"
-  cmake -DLIMBER_MPI=ON build >"$package_out/mpi.log" 2>&1 &&
-    cmake --build build --target limber-mpi-openmpi limber-mpi-mpich </dev/null >>"$package_out/mpi.log" 2>&1 ||
-    die 3 "the modules for MPI could not be built (whole output: $package_out/mpi.log)." \
-      "apt-get install libopenmpi-dev libmpich-dev"
+  cmake -DLIMBER_MPI=ON build >"$package_out/modules.log" 2>&1 &&
+    cmake --build build --target limber-mpi-openmpi limber-mpi-mpich limber-pagmo </dev/null \
+      >>"$package_out/modules.log" 2>&1 ||
+    die 3 "the modules for MPI and pagmo could not be built (whole output: $package_out/modules.log)." \
+      "apt-get install libopenmpi-dev libmpich-dev libpagmo-dev"
 }
 
 # need_program PROGRAM PACKAGE: exits with an error if the program is missing.
@@ -134,7 +135,7 @@ Maintainer: $package_maintainer
 Installed-Size: $(du -sk --apparent-size "$2/usr" | cut -f1)
 Depends: $3, libegl1, libgl1, libgles2
 Recommends: libgl1-mesa-dri, fonts-inter, fonts-jetbrains-mono
-Suggests: ffmpeg, avahi-utils, liblo-tools, openmpi-bin | mpich
+Suggests: ffmpeg, avahi-utils, liblo-tools, openmpi-bin | mpich, libpagmo8 | libpagmo9t64
 Section: graphics
 Priority: optional
 Description: live simulator of actuated, articulated bodies
@@ -174,7 +175,7 @@ make_package() {
   local stage=$package_out/stage version depends file
   for file in dpkg-deb dpkg-shlibdeps; do need_program $file dpkg-dev; done
   version=$(package_version)-1~$(release_tag)
-  build_mpi
+  build_modules
   rm -rf "$stage" && mkdir -p "$stage/DEBIAN"
   install_tree "$stage/usr"
   debian_documents "$stage" "$version"
@@ -300,7 +301,7 @@ make_tarball() {
   need_program patchelf patchelf
   name=limber-$(package_version)-linux-$(uname -m)
   tree=$package_out/$name
-  build_mpi
+  build_modules
   rm -rf "$tree" && mkdir -p "$tree"
   install_tree "$tree"
   bundle_libraries "$tree"

@@ -1,4 +1,4 @@
-// CMA-ES within bounds, MAP-Elites and NSGA-II, as searches.
+// CMA-ES within bounds, MAP-Elites and NSGA-II, as searches; the choice of the algorithm.
 #include "experiments/search.h"
 
 #include <cmath>
@@ -8,6 +8,7 @@
 
 #include "experiments/cma_es.h"
 #include "experiments/map_elites.h"
+#include "experiments/module_search.h"
 #include "experiments/nsga2.h"
 
 namespace limber::experiments {
@@ -136,6 +137,7 @@ double reflected(double x) {
 std::unique_ptr<Search> Search::create(const Options& options) {
   if (options.algorithm == Algorithm::cma_es) return std::make_unique<CmaSearch>(options);
   if (options.algorithm == Algorithm::nsga2) return std::make_unique<GeneticSearch>(options);
+  if (is_in_module(options.algorithm)) return std::make_unique<ModuleSearch>(options);
   MapElites::Options archive;
   archive.axes = options.axes;
   archive.descriptors = options.descriptors;

@@ -12,6 +12,8 @@
 #include "experiments/elite_list.h"
 #include "experiments/evaluation.h"
 
+struct LimberSearchModule;
+
 namespace limber::experiments {
 
 class Search {
@@ -25,15 +27,17 @@ class Search {
     std::uint64_t hash = 0;  ///< State hash of its evaluation with the first seed.
   };
 
-  enum class Algorithm : std::uint8_t { cma_es, map_elites, nsga2 };
+  /// The last four are pagmo's, of a module.
+  enum class Algorithm : std::uint8_t { cma_es, map_elites, nsga2, gaco, maco, nspso, pso };
 
   struct Options {
     Algorithm algorithm = Algorithm::cma_es;
     std::size_t axes = 1;
-    std::size_t objectives = 1;           ///< More than one for NSGA-II only.
+    std::size_t objectives = 1;           ///< One for cma_es, map_elites, gaco, pso; several for maco, nspso.
     std::vector<ResultInfo> descriptors;  ///< Of MAP-Elites.
     std::size_t population = 0;           ///< 0: the default of the algorithm.
     std::uint64_t seed = 1;
+    const LimberSearchModule* module = nullptr;  ///< Of pagmo's algorithms; null: only for their saved elites.
   };
   static std::unique_ptr<Search> create(const Options& options);
 
@@ -56,6 +60,9 @@ class Search {
   virtual std::string save() const = 0;
   virtual Result<void> restore(std::string_view text) = 0;
 };
+
+/// True if the algorithm belongs to the module.
+constexpr bool is_in_module(Search::Algorithm algorithm) { return algorithm >= Search::Algorithm::gaco; }
 
 /// Folds a number into 0 .. 1 by reflection at both ends, so that a search without bounds stays within the range.
 double reflected(double x);

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/program.h"
@@ -13,10 +14,12 @@
 
 namespace limber::app::test {
 
-/// MAP-Elites over a ball without gravity that is pushed at the start, with noise, so that elites are often replaced.
+/// A search over a ball without gravity that is pushed at the start, with noise, so that elites are often replaced.
 class KilledSearch {
  public:
-  explicit KilledSearch(int generations) : generations_(generations) {
+  /// `search`: the options of the algorithm.
+  explicit KilledSearch(int generations, std::vector<std::string> search = {"--descriptor", "distance"})
+      : generations_(generations), search_(std::move(search)) {
     folder_.file("push.lua", R"(
 params { { "push", 1, min = 0, max = 4 }, { "mass", 1, min = 0.5, max = 2, rerun = true } }
 sim.gravity = vec3()
@@ -54,21 +57,21 @@ result("noise", function() return rng:uniform() + part.position.x end)
 
   /// Kills the whole search this number of times, each time a random number of generations after it was resumed.
   void run_with_killed_jobs(int kills) {
-    int generation = 0;
+    std::string saved;
     for (int i = 0; i < kills; i++) {
-      Process process(command("jobs", generation > 0), folder_.path());
-      const int end = generation + 1 + static_cast<int>(random_.next() % 3);
-      while (generation < end && !ended(process)) {
-        usleep(200);
-        generation = std::max(generation, saved_generation());
+      Process process(command("jobs", !saved.empty()), folder_.path());
+      for (auto left = 1 + random_.next() % 3; left > 0 && !ended(process); usleep(200)) {
+        const std::string state = content(file("jobs", "state.json"));
+        if (state == saved) continue;
+        saved = state;
+        left--;
       }
       usleep(static_cast<useconds_t>(random_.next() % 20'000));  // anywhere within a generation
       EXPECT_FALSE(ended(process)) << "the search has too few generations";
       process.signal(SIGKILL);
       (void)process.finish();
-      generation = std::max(generation, saved_generation());
     }
-    const RunResult result = Process(command("jobs", generation > 0), folder_.path()).finish();
+    const RunResult result = Process(command("jobs", !saved.empty()), folder_.path()).finish();
     EXPECT_EQ(result.code, 0) << result.err;
   }
 
@@ -81,22 +84,15 @@ result("noise", function() return rng:uniform() + part.position.x end)
 
  private:
   std::vector<std::string> command(const std::string& out, bool resume = false) const {
-    std::vector<std::string> words{"evolve",       "push.lua", "--maximize",    "noise",
-                                   "--descriptor", "distance", "--duration",    "0.1",
-                                   "--population", "4",        "--generations", std::to_string(generations_),
-                                   "--jobs",       "2",        "--out",         out};
+    std::vector<std::string> words{
+        "evolve", "push.lua", "--maximize", "noise", "--duration", "0.1",           "--population",
+        "4",      "--jobs",   "2",          "--out", out,          "--generations", std::to_string(generations_)};
+    words.insert(words.end(), search_.begin(), search_.end());
     if (resume) words.emplace_back("--resume");
     return limber_command(words);
   }
   std::string file(const std::string& out, const std::string& name) const {
     return folder_.path() + "/" + out + "/" + name;
-  }
-  /// The generation of state.json; 0 if there is none.
-  int saved_generation() const {
-    const std::string state = content(file("jobs", "state.json"));
-    const std::string_view key = R"(\"generation\":)";
-    const std::size_t at = state.find(key);
-    return at == std::string::npos ? 0 : std::atoi(state.c_str() + at + key.size());
   }
   static bool ended(const Process& process) {
     siginfo_t info{};
@@ -106,6 +102,7 @@ result("noise", function() return rng:uniform() + part.position.x end)
 
   TempFolder folder_;
   int generations_;
+  std::vector<std::string> search_;
   Random random_{1, "kills"};
 };
 

@@ -191,7 +191,13 @@ TEST(Evolve, WrongObjectivesAreExplained) {
   expect_fault({"--maximize", "distance", "--minimize", "distance"}, "the result distance is an objective twice");
   expect_fault({"--maximize", "distance", "--minimize", "noise", "--descriptor", "distance"},
                "a search for variety has one objective");
-  expect_fault({"--maximize", "distance", "--minimize", "noise", "--algorithm", "cma-es"}, "use nsga2 for several");
+  expect_fault({"--maximize", "distance", "--minimize", "noise", "--algorithm", "cma-es"},
+               "use nsga2, maco or nspso for several");
+  expect_fault({"--maximize", "distance", "--minimize", "noise", "--algorithm", "pso"}, "it has one objective only");
+  expect_fault({"--maximize", "distance", "--algorithm", "nspso"}, "it needs several objectives");
+  expect_fault({"--maximize", "distance", "--algorithm", "gaco", "--population", "1001"}, "of gaco at most 1000");
+  expect_fault({"--maximize", "distance", "--algorithm", "pso", "--population", "100", "--generations", "10001"},
+               "pso evaluates at most 1000000 individuals");
   expect_fault({"--maximize", "distance", "--algorithm", "map-elites"}, "name its descriptors");
   expect_fault({"--maximize", "distance", "--descriptor", "distance", "--algorithm", "nsga2"},
                "only map-elites has descriptors");

@@ -385,7 +385,7 @@ std::vector<SourceFile> source_files(std::string_view folder, const std::vector<
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const std::string path = entry.path().lexically_relative(root).generic_string();
     if (path.starts_with("src/link/")) continue;  // limber-link, a program of its own
-    if (path.starts_with("src/mpi/")) continue;   // limber-mpi-*.so, modules that are loaded at run time
+    if (path.starts_with("src/mpi/") || path.starts_with("src/pagmo/")) continue;  // modules, loaded at run time
     if (std::none_of(endings.begin(), endings.end(), [&](const std::string& e) { return path.ends_with(e); })) continue;
     std::ifstream in(entry.path(), std::ios::binary);
     files.push_back({path, {std::istreambuf_iterator<char>(in), {}}});

@@ -147,9 +147,10 @@ void add_evolve(CLI::App& app, EvolveCommand& command) {
   evolve
       ->add_option("--algorithm", command.algorithm,
                    "cma-es (one objective), map-elites (with --descriptor), nsga2 (any number of objectives); default: "
-                   "the first of these that fits.")
-      ->type_name("cma-es|map-elites|nsga2")
-      ->check(CLI::IsMember({"cma-es", "map-elites", "nsga2"}));
+                   "the first of these that fits. Of pagmo, if its module is installed: gaco, pso (one), maco, nspso "
+                   "(several).")
+      ->type_name("cma-es|map-elites|nsga2|gaco|pso|maco|nspso")
+      ->check(CLI::IsMember({"cma-es", "map-elites", "nsga2", "gaco", "pso", "maco", "nspso"}));
   evolve
       ->add_option("--descriptor", command.descriptors,
                    "A result with a range: keep the best for each of its cells (MAP-Elites); may be repeated.")
@@ -159,8 +160,9 @@ void add_evolve(CLI::App& app, EvolveCommand& command) {
       ->type_name("N")
       ->check(CLI::Range(1, 1000000));
   evolve
-      ->add_option("--population", command.population,
-                   "Points per generation; default: 4 + 3 ln(number of parameters), of nsga2 40, of map-elites 100.")
+      ->add_option(
+          "--population", command.population,
+          "Points per generation; default: 4 + 3 ln(number of parameters), of map-elites 100, of the others 40.")
       ->type_name("N")
       ->check(CLI::Range(4, 100000));
   evolve->add_option("--search-seed", command.search_seed, "Seed of the search; default 1.")

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -31,8 +32,9 @@ using experiments::ResultInfo;
 using experiments::Search;
 using RecordJson = nlohmann::ordered_json;
 
-constexpr std::array<const char*, 3> kAlgorithms{"cma-es", "map-elites", "nsga2"};
-constexpr std::array<std::string_view, 3> kPrefixes{"best_", "cell_", "front_"};  // of the names of elites
+// words for --algorithm, and prefixes of the names of elites, by Search::Algorithm
+constexpr std::array<const char*, 7> kAlgorithms{"cma-es", "map-elites", "nsga2", "gaco", "maco", "nspso", "pso"};
+constexpr std::array<std::string_view, 7> kPrefixes{"best_", "cell_", "front_", "best_", "front_", "front_", "best_"};
 
 // True if a search gives such names to elites.
 bool is_elite_name(std::string_view name) {
@@ -76,6 +78,12 @@ std::vector<std::size_t> chosen_for_presets(const std::vector<Elite>& elites) {
 
 const char* name_of(Search::Algorithm algorithm) { return kAlgorithms[static_cast<std::size_t>(algorithm)]; }
 
+std::optional<Search::Algorithm> algorithm_named(std::string_view name) {
+  const auto* const known = std::ranges::find(kAlgorithms, name);
+  if (known == kAlgorithms.end()) return {};
+  return static_cast<Search::Algorithm>(known - kAlgorithms.begin());
+}
+
 std::size_t best_of(const std::vector<Elite>& elites, std::size_t objective) {
   const auto best =
       std::ranges::max_element(elites, {}, [&](const Elite& elite) { return elite.objectives[objective]; });
@@ -91,7 +99,7 @@ Result<void> write_archive_file(const std::string& path, std::string_view text) 
 }
 
 Search::Options SearchRecord::options() const {
-  return {algorithm, axes.size(), objectives.size(), descriptors, population, search_seed};
+  return {algorithm, axes.size(), objectives.size(), descriptors, population, search_seed, nullptr};
 }
 
 std::string SearchRecord::text() const {
@@ -121,14 +129,13 @@ Result<SearchRecord> SearchRecord::parse(std::string_view text) try {
   for (const RecordJson& entry : json.at("parameters")) record.axes.push_back(axis_of(entry));
   for (const RecordJson& entry : json.at("descriptors"))
     record.descriptors.push_back({entry.at("name"), entry.at("min"), entry.at("max"), entry.at("cells")});
-  const std::string algorithm = json.at("algorithm");
-  const auto* const known = std::ranges::find(kAlgorithms, algorithm);
+  const std::optional<Search::Algorithm> algorithm = algorithm_named(json.at("algorithm").get<std::string>());
   record.population = json.at("population");
   record.search_seed = json.at("search_seed");
-  if (known == kAlgorithms.end() || record.seeds.empty() || record.objectives.empty() || record.axes.empty() ||
+  if (!algorithm || record.seeds.empty() || record.objectives.empty() || record.axes.empty() ||
       record.population > experiments::CmaEs::kMaxPopulation)
     return Error{"the file is damaged"};
-  record.algorithm = static_cast<Search::Algorithm>(known - kAlgorithms.begin());
+  record.algorithm = *algorithm;
   return record;
 } catch (const nlohmann::json::exception&) {
   return Error{"the file is damaged"};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,6 +37,7 @@ struct SearchRecord {
   std::size_t population = 0;
   std::uint64_t search_seed = 1;
 
+  /// Without a module.
   experiments::Search::Options options() const;
   /// Returns the record as JSON, and parses it. The path is not part of it, so that a scene can be moved.
   std::string text() const;
@@ -51,8 +53,9 @@ struct SearchRecord {
   std::vector<std::string> names(const std::vector<experiments::Elite>& elites) const;
 };
 
-/// Returns the word for --algorithm.
+/// Returns the word for --algorithm, and the algorithm of a word.
 const char* name_of(experiments::Search::Algorithm algorithm);
+std::optional<experiments::Search::Algorithm> algorithm_named(std::string_view name);
 
 /// Returns the index of the elite that is best in the first objective. Requires at least one.
 std::size_t best_of(const std::vector<experiments::Elite>& elites, std::size_t objective = 0);

@@ -15,6 +15,7 @@
 #include "app/experiments/archive.h"
 #include "app/experiments/evolve_play.h"
 #include "app/experiments/experiment.h"
+#include "app/experiments/module.h"
 #include "app/experiments/mpi_job.h"
 #include "app/paths.h"
 #include "app/progress.h"
@@ -25,6 +26,7 @@
 #include "base/system/signals.h"
 #include "base/text.h"
 #include "experiments/map_elites.h"
+#include "experiments/module_search.h"
 #include "experiments/nsga2.h"
 #include "experiments/search.h"
 
@@ -35,6 +37,7 @@ namespace {
 namespace fs = std::filesystem;
 using experiments::Evaluation;
 using experiments::MapElites;
+using experiments::ModuleSearch;
 using experiments::Nsga2;
 using experiments::Outcome;
 using experiments::ResultInfo;
@@ -58,6 +61,8 @@ class Evolution {
   Result<void> choose_objectives();
   Result<void> choose_descriptors();
   Result<void> choose_algorithm();
+  Result<void> check_size() const;
+  Result<void> create_search();
   Result<void> open_folder();
   Result<void> resume();
   Result<void> check_hash();
@@ -136,22 +141,54 @@ Result<void> Evolution::choose_descriptors() {
 }
 
 Result<void> Evolution::choose_algorithm() {
+  using enum Search::Algorithm;
   const bool several = record_.objectives.size() > 1;
   const bool archive = !record_.descriptors.empty();
   if (several && archive) return Error{"--descriptor: a search for variety has one objective; leave out the others"};
-  const Search::Algorithm natural = archive   ? Search::Algorithm::map_elites
-                                    : several ? Search::Algorithm::nsga2
-                                              : Search::Algorithm::cma_es;
-  record_.algorithm = natural;
   const std::string& wanted = command_.algorithm;
-  if (wanted == name_of(Search::Algorithm::nsga2) && !archive) record_.algorithm = Search::Algorithm::nsga2;
-  if (record_.algorithm == Search::Algorithm::nsga2 && record_.population > Nsga2::kMaxPopulation)
-    return Error{fmt::format("--population: of nsga2 at most {}", Nsga2::kMaxPopulation)};
-  if (wanted.empty() || wanted == name_of(record_.algorithm)) return {};
-  if (archive) return Error{fmt::format("--algorithm {}: only map-elites has descriptors", wanted)};
-  if (wanted == name_of(Search::Algorithm::map_elites))
+  const Search::Algorithm natural = archive ? map_elites : several ? nsga2 : cma_es;
+  const Search::Algorithm chosen = algorithm_named(wanted).value_or(natural);
+  if (archive && chosen != map_elites)
+    return Error{fmt::format("--algorithm {}: only map-elites has descriptors", wanted)};
+  if (!archive && chosen == map_elites)
     return Error{"--algorithm map-elites: name its descriptors with --descriptor RESULT"};
-  return Error{fmt::format("--algorithm {}: it has one objective only; use nsga2 for several", wanted)};
+  if (several && (chosen == cma_es || chosen == gaco || chosen == pso))
+    return Error{
+        fmt::format("--algorithm {}: it has one objective only; use nsga2, maco or nspso for several", wanted)};
+  if (!several && (chosen == maco || chosen == nspso))
+    return Error{
+        fmt::format("--algorithm {}: it needs several objectives; use cma-es, gaco, pso or nsga2 for one", wanted)};
+  record_.algorithm = chosen;
+  return check_size();
+}
+
+Result<void> Evolution::check_size() const {
+  const bool in_module = is_in_module(record_.algorithm);
+  const std::size_t limit = in_module ? ModuleSearch::kMaxPopulation : Nsga2::kMaxPopulation;
+  if ((in_module || record_.algorithm == Search::Algorithm::nsga2) && record_.population > limit)
+    return Error{fmt::format("--population: of {} at most {}", name_of(record_.algorithm), limit)};
+  const std::size_t population = record_.population > 0 ? record_.population : ModuleSearch::kPopulation;
+  if (in_module && population * static_cast<std::size_t>(command_.generations) > ModuleSearch::kMaxEvaluations)
+    return Error{
+        fmt::format("--generations: {} evaluates at most {} individuals; use fewer generations or a smaller "
+                    "population",
+                    name_of(record_.algorithm), ModuleSearch::kMaxEvaluations)};
+  return {};
+}
+
+// Creates the search; loads the module of its algorithm.
+Result<void> Evolution::create_search() {
+  Search::Options options = record_.options();
+  if (is_in_module(record_.algorithm)) {
+    const Result<const LimberSearchModule*> module = load_module<LimberSearchModule>(
+        "limber-pagmo.so", experiments::kSearchModuleFunction, experiments::kSearchModuleVersion,
+        {"Install libpagmo-dev and build Limber again", "Install pagmo, or build Limber again"});
+    if (!module) return Error{fmt::format("--algorithm {}: {}", name_of(record_.algorithm), module.error())};
+    options.module = *module;
+  }
+  search_ = Search::create(options);
+  record_.population = search_->population();
+  return {};
 }
 
 Result<void> Evolution::prepare() {
@@ -165,10 +202,7 @@ Result<void> Evolution::prepare() {
   Result<void> chosen = choose_objectives();
   if (chosen) chosen = choose_descriptors();
   if (chosen) chosen = choose_algorithm();
-  if (!chosen) return chosen;
-  search_ = Search::create(record_.options());
-  record_.population = search_->population();
-  return {};
+  return chosen ? create_search() : chosen;
 }
 
 Result<void> Evolution::open_folder() {

@@ -36,7 +36,7 @@ struct EvolveCommand {
   ExperimentOptions common;           ///< `out`: a folder.
   std::vector<std::string> maximize;  ///< Names of results.
   std::vector<std::string> minimize;
-  std::string algorithm;                 ///< cma-es, map-elites, nsga2; empty: by objectives and descriptors.
+  std::string algorithm;                 ///< Word for --algorithm; empty: by objectives and descriptors.
   std::vector<std::string> descriptors;  ///< Names of results with a range.
   int generations = 100;
   int population = 0;  ///< Individuals per generation; 0: the algorithm's default.

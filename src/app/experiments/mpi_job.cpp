@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/exit_code.h"
+#include "app/experiments/module.h"
 #include "app/experiments/process_workers.h"
 #include "app/experiments/worker.h"
 #include "app/paths.h"
@@ -25,17 +26,6 @@ int number_of(const Environment& environment, const char* name, int otherwise) {
 }
 
 std::string place_of(const MpiLaunch& launch) { return fmt::format("rank {} on {}", launch.rank, system::host_name()); }
-
-const LimberMpiModule* load_module(const std::string& file, std::string& reason) {
-  using Function = const LimberMpiModule* (*)();
-  const auto function =
-      reinterpret_cast<Function>(system::load_function(file, experiments::kMpiModuleFunction, reason));
-  if (function == nullptr) return nullptr;
-  const LimberMpiModule* const module = function();
-  if (module->version == experiments::kMpiModuleVersion) return module;
-  reason = "it belongs to another version of limber";
-  return nullptr;
-}
 
 }  // namespace
 
@@ -66,22 +56,16 @@ Result<std::unique_ptr<MpiJob>> MpiJob::open(const std::string& choice, const En
         fmt::format("{}: srun started {} tasks without MPI. Start them with srun --mpi=pmix (Open MPI) or srun "
                     "--mpi=pmi2 (MPICH), or use --mpi off for separate runs",
                     place, launch.size)};
-  const std::string name = fmt::format("limber-mpi-{}.so", implementation);
-  const std::string file = module_file(name);
-  if (file.empty())
-    return Error{
-        fmt::format("{}: the module {} is not beside {}. Install lib{}-dev and build Limber again, or use "
-                    "another MPI with --mpi",
-                    place, name, system::executable_path(), implementation)};
-  std::string reason;
-  const LimberMpiModule* const module = load_module(file, reason);
-  if (module == nullptr)
-    return Error{fmt::format("{}: {} can't be loaded: {}. Install this MPI on the node, or build Limber again", place,
-                             file, reason)};
+  const Result<const LimberMpiModule*> module = load_module<LimberMpiModule>(
+      fmt::format("limber-mpi-{}.so", implementation), experiments::kMpiModuleFunction, experiments::kMpiModuleVersion,
+      {fmt::format("Install lib{}-dev and build Limber again, or use another MPI with --mpi", implementation),
+       "Install this MPI on the node, or build Limber again"});
+  if (!module) return Error{fmt::format("{}: {}", place, module.error())};
   int rank = 0;
   int size = 0;
-  if (!module->start(&rank, &size)) return Error{fmt::format("{}: MPI can't be started ({})", place, implementation)};
-  std::unique_ptr<MpiJob> job(new MpiJob(*module, rank, size));
+  if (!(*module)->start(&rank, &size))
+    return Error{fmt::format("{}: MPI can't be started ({})", place, implementation)};
+  std::unique_ptr<MpiJob> job(new MpiJob(**module, rank, size));
   if (launch.size > 0 && launch.size != size)
     return Error{
         fmt::format("{}: the launcher started {} ranks, but {} sees {}. Use the mpirun of the same MPI, or "

@@ -109,8 +109,8 @@ Result<lighting::LightingOptions> parse_lights(const PlayOptions& options) {
   lighting::LightingOptions lights;
   lights.lights = options.network.lights;
   lights.in_real_time = !options.fast;
-  static const std::vector<std::string> kDefault = {"sacn"};
-  for (const std::string& text : options.network.lights_out.empty() ? kDefault : options.network.lights_out) {
+  const std::vector<std::string> automatic = {"sacn"};
+  for (const std::string& text : options.network.lights_out.empty() ? automatic : options.network.lights_out) {
     auto targets = lighting::parse_lights_out(text);
     if (!targets) return Error{targets.error()};
     lights.targets.insert(lights.targets.end(), targets->begin(), targets->end());

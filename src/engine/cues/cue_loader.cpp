@@ -85,7 +85,7 @@ Result<void> CueLoader::edit(const Message& request) {
   const auto fault = [&](const std::string& why) { return Error{fmt::format("{}: {}", printable(path), why)}; };
   if (!text) return fault(text.error());
   std::size_t current = 0;
-  const Result<void> idle = scenes_.run_between_ticks([&] { current = show_.cues.position(); });
+  Result<void> idle = scenes_.run_between_ticks([&] { current = show_.cues.position(); });
   if (!idle) return idle;
   const Result<std::string> edited = edited_cues(*text, request, current);
   if (!edited) return fault(edited.error());

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -41,7 +42,8 @@ class LightingOutput {
 
  private:
   struct Output {
-    Output(LightTarget target, const Cid& cid, LightStream::Send send) : stream(std::move(target), cid, send) {}
+    Output(LightTarget target, const Cid& cid, LightStream::Send send)
+        : stream(std::move(target), cid, std::move(send)) {}
     bool is_open() const { return socket.is_open() || serial.is_open(); }
     system::UdpSocket socket;
     SerialSender serial;  // instead of the socket

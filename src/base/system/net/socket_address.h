@@ -17,44 +17,44 @@ class SocketAddress {
   SocketAddress() = default;
   explicit SocketAddress(const Endpoint& endpoint) {
     if (endpoint.ip.is_v6) {
-      length_ = sizeof v6_;
-      v6_.sin6_family = AF_INET6;
-      v6_.sin6_port = htons(endpoint.port);
-      v6_.sin6_scope_id = endpoint.ip.zone;
+      length_ = sizeof address_.v6;
+      address_.v6.sin6_family = AF_INET6;
+      address_.v6.sin6_port = htons(endpoint.port);
+      address_.v6.sin6_scope_id = endpoint.ip.zone;
       for (unsigned i = 0; i < 8; i++) {
-        v6_.sin6_addr.s6_addr[i] = static_cast<unsigned char>(endpoint.ip.high >> (56 - 8 * i));
-        v6_.sin6_addr.s6_addr[8 + i] = static_cast<unsigned char>(endpoint.ip.low >> (56 - 8 * i));
+        address_.v6.sin6_addr.s6_addr[i] = static_cast<unsigned char>(endpoint.ip.high >> (56 - 8 * i));
+        address_.v6.sin6_addr.s6_addr[8 + i] = static_cast<unsigned char>(endpoint.ip.low >> (56 - 8 * i));
       }
     } else {
-      v4_.sin_family = AF_INET;
-      v4_.sin_port = htons(endpoint.port);
-      v4_.sin_addr.s_addr = htonl(static_cast<std::uint32_t>(endpoint.ip.low));
-      length_ = sizeof v4_;
+      address_.v4.sin_family = AF_INET;
+      address_.v4.sin_port = htons(endpoint.port);
+      address_.v4.sin_addr.s_addr = htonl(static_cast<std::uint32_t>(endpoint.ip.low));
+      length_ = sizeof address_.v4;
     }
   }
   /// A copy of an IPv4 or IPv6 address.
   explicit SocketAddress(const sockaddr& address) {
-    length_ = address.sa_family == AF_INET6 ? sizeof v6_ : sizeof v4_;
-    std::memcpy(&v6_, &address, length_);
+    length_ = address.sa_family == AF_INET6 ? sizeof address_.v6 : sizeof address_.v4;
+    std::memcpy(&address_.v6, &address, length_);
   }
 
   /// 0.0.0.0 with port 0 if the address is of neither kind.
   Endpoint endpoint() const {
-    if (any_.sa_family == AF_INET) return {ntohl(v4_.sin_addr.s_addr), ntohs(v4_.sin_port)};
-    if (any_.sa_family != AF_INET6) return {};
-    IpAddress ip(0, 0, v6_.sin6_scope_id);
+    if (address_.any.sa_family == AF_INET) return {ntohl(address_.v4.sin_addr.s_addr), ntohs(address_.v4.sin_port)};
+    if (address_.any.sa_family != AF_INET6) return {};
+    IpAddress ip(0, 0, address_.v6.sin6_scope_id);
     for (unsigned i = 0; i < 8; i++) {
-      ip.high = ip.high << 8U | v6_.sin6_addr.s6_addr[i];
-      ip.low = ip.low << 8U | v6_.sin6_addr.s6_addr[8 + i];
+      ip.high = ip.high << 8U | address_.v6.sin6_addr.s6_addr[i];
+      ip.low = ip.low << 8U | address_.v6.sin6_addr.s6_addr[8 + i];
     }
     if (!ip.is_link_local()) ip.zone = 0;
-    return {ip, ntohs(v6_.sin6_port)};
+    return {ip, ntohs(address_.v6.sin6_port)};
   }
 
-  const in6_addr& ipv6() const { return v6_.sin6_addr; }
-  int family() const { return any_.sa_family; }
-  const sockaddr* get() const { return &any_; }
-  sockaddr* get() { return &any_; }
+  const in6_addr& ipv6() const { return address_.v6.sin6_addr; }
+  int family() const { return address_.any.sa_family; }
+  const sockaddr* get() const { return &address_.any; }
+  sockaddr* get() { return &address_.any; }
   socklen_t length() const { return length_; }
   static constexpr socklen_t kMaxLength = sizeof(sockaddr_in6);
   /// For a call that stores an address and its length.
@@ -66,10 +66,10 @@ class SocketAddress {
  private:
   // all begin with the family
   union {
-    sockaddr_in6 v6_{};
-    sockaddr_in v4_;
-    sockaddr any_;
-  };
+    sockaddr_in6 v6{};
+    sockaddr_in v4;
+    sockaddr any;
+  } address_;
   socklen_t length_ = 0;
 };
 
