@@ -60,6 +60,7 @@ class Evolution {
   Result<std::size_t> result_index(const std::string& name, const char* option) const;
   Result<void> choose_objectives();
   Result<void> choose_descriptors();
+  Result<void> check_objectives(Search::Algorithm algorithm) const;
   Result<void> choose_algorithm();
   Result<void> check_size() const;
   Result<void> create_search();
@@ -140,6 +141,20 @@ Result<void> Evolution::choose_descriptors() {
   return {};
 }
 
+Result<void> Evolution::check_objectives(Search::Algorithm algorithm) const {
+  using enum Search::Algorithm;
+  const bool several = record_.objectives.size() > 1;
+  const bool needs_one = algorithm == cma_es || algorithm == gaco || algorithm == pso;
+  const bool needs_several = algorithm == maco || algorithm == nspso;
+  if (several && needs_one)
+    return Error{fmt::format("--algorithm {}: it has one objective only; use nsga2, maco or nspso for several",
+                             name_of(algorithm))};
+  if (!several && needs_several)
+    return Error{fmt::format("--algorithm {}: it needs several objectives; use cma-es, gaco, pso or nsga2 for one",
+                             name_of(algorithm))};
+  return {};
+}
+
 Result<void> Evolution::choose_algorithm() {
   using enum Search::Algorithm;
   const bool several = record_.objectives.size() > 1;
@@ -152,12 +167,7 @@ Result<void> Evolution::choose_algorithm() {
     return Error{fmt::format("--algorithm {}: only map-elites has descriptors", wanted)};
   if (!archive && chosen == map_elites)
     return Error{"--algorithm map-elites: name its descriptors with --descriptor RESULT"};
-  if (several && (chosen == cma_es || chosen == gaco || chosen == pso))
-    return Error{
-        fmt::format("--algorithm {}: it has one objective only; use nsga2, maco or nspso for several", wanted)};
-  if (!several && (chosen == maco || chosen == nspso))
-    return Error{
-        fmt::format("--algorithm {}: it needs several objectives; use cma-es, gaco, pso or nsga2 for one", wanted)};
+  if (Result<void> counted = check_objectives(chosen); !counted) return counted;
   record_.algorithm = chosen;
   return check_size();
 }

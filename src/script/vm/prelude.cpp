@@ -1,14 +1,48 @@
-// The order in which the files of the prelude run, and calls of its functions.
+// The order in which the files of the prelude run, their bytecode, and calls of its functions.
 #include "script/vm/prelude.h"
 
 #include <array>
+#include <memory>
 
+#include <fmt/format.h>
 #include <lua.hpp>
 
 #include "base/check.h"
 #include "base/log/log.h"
 
 namespace limber::script {
+
+namespace {
+
+int append_bytes(lua_State*, const void* bytes, std::size_t size, void* text) {
+  static_cast<std::string*>(text)->append(static_cast<const char*>(bytes), size);
+  return 0;
+}
+
+std::vector<PreludeChunk> compile_prelude() {
+  const std::unique_ptr<lua_State, void (*)(lua_State*)> state(luaL_newstate(), lua_close);
+  std::vector<PreludeChunk> chunks;
+  for (const std::string_view file : prelude_order()) {
+    const EmbeddedFile* const source = find_embedded(prelude_files(), file);
+    LIMBER_CHECK(source != nullptr);
+    PreludeChunk& chunk = chunks.emplace_back();
+    chunk.name = fmt::format("=limber {}", file);
+    const bool compiles =
+        luaL_loadbuffer(state.get(), source->text.data(), source->text.size(), chunk.name.c_str()) == 0 &&
+        lua_dump(state.get(), append_bytes, &chunk.bytecode) == 0;
+    if (!compiles) log_error("script: {}", text_at(state.get(), -1));
+    LIMBER_CHECK(compiles);
+    lua_settop(state.get(), 0);
+  }
+  return chunks;
+}
+
+}  // namespace
+
+const std::vector<PreludeChunk>& compiled_prelude() {
+  static const std::vector<PreludeChunk> chunks = compile_prelude();
+  return chunks;
+}
 
 std::span<const std::string_view> prelude_order() {
   static constexpr auto kOrder = std::to_array<std::string_view>({

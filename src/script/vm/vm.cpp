@@ -126,11 +126,8 @@ void Vm::load_prelude(ScriptContext& context) {
   guard_function("guarded", guarded<Guard::Kind::call>);
   guard_function("guarded_run", guarded<Guard::Kind::run>);
   guard_function("load", load_text);
-  for (const std::string_view file : prelude_order()) {
-    const EmbeddedFile* const source = find_embedded(prelude_files(), file);
-    LIMBER_CHECK(source != nullptr);
-    const std::string name = fmt::format("=limber {}", file);
-    int fault = luaL_loadbuffer(L, source->text.data(), source->text.size(), name.c_str());
+  for (const PreludeChunk& chunk : compiled_prelude()) {
+    int fault = luaL_loadbuffer(L, chunk.bytecode.data(), chunk.bytecode.size(), chunk.name.c_str());
     if (fault == 0) {
       lua_pushvalue(L, -2);
       fault = lua_pcall(L, 1, 0, 0);
