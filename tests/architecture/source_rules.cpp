@@ -384,7 +384,7 @@ std::vector<SourceFile> source_files(std::string_view folder, const std::vector<
   if (!fs::is_directory(root / folder)) return files;
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
     const std::string path = entry.path().lexically_relative(root).generic_string();
-    if (path.starts_with("src/link/")) continue;  // limber-link, a program of its own
+    if (path.starts_with("src/link/")) continue;                                   // limber-link, a program of its own
     if (path.starts_with("src/mpi/") || path.starts_with("src/pagmo/")) continue;  // modules, loaded at run time
     if (std::none_of(endings.begin(), endings.end(), [&](const std::string& e) { return path.ends_with(e); })) continue;
     std::ifstream in(entry.path(), std::ios::binary);

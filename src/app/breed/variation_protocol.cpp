@@ -27,11 +27,8 @@ std::string encode(const ImageRequest& request) {
 }
 
 std::string encode(const ImageHeader& header) {
-  return Json{{"number", header.number},
-              {"image", {header.width, header.height}},
-              {"time", header.time},
-              {"error", header.error}}
-      .dump(-1, ' ', false, Json::error_handler_t::replace);
+  return Json{{"number", header.number}, {"image", {header.width, header.height}}, {"error", header.error}}.dump(
+      -1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::optional<ImageRequest> decode_image_request(std::string_view line) try {
@@ -55,8 +52,7 @@ std::optional<ImageRequest> decode_image_request(std::string_view line) try {
 
 std::optional<ImageHeader> decode_image_header(std::string_view line) try {
   const Json json = Json::parse(line);
-  ImageHeader header{json.at("number"), json.at("image").at(0), json.at("image").at(1), json.at("time"),
-                     json.at("error")};
+  ImageHeader header{json.at("number"), json.at("image").at(0), json.at("image").at(1), json.at("error")};
   const bool empty = header.width == 0 && header.height == 0;
   return empty || is_size(header.width, header.height) ? std::optional(header) : std::nullopt;
 } catch (const Json::exception&) {

@@ -28,7 +28,6 @@ struct ImageHeader {
   std::uint64_t number = 0;  ///< Of the evaluation that plays.
   int width = 0;             ///< 0: there is no image yet.
   int height = 0;
-  double time = 0;    ///< Simulated seconds.
   std::string error;  ///< Reason why it doesn't play as it should; empty: it does.
 
   /// Number of bytes that follow: four for each pixel (render::Pixels).

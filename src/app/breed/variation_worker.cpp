@@ -152,7 +152,6 @@ ImageHeader VariationPlayer::draw(const ImageRequest& request, render::Pixels& i
   if (snapshots_.empty()) return header;
   move_camera(request.mouse, request.height, now);
   follow(request.follow);
-  header.time = snapshots_.current().time;
   if (const Result<void> drawn = renderer_->draw(snapshots_.previous(), snapshots_.current(), snapshots_.mix(now),
                                                  request.width, request.height);
       !drawn) {
