@@ -121,7 +121,7 @@ pagmo::algorithm algorithm_of(const std::string& name, std::size_t population, s
 }  // namespace
 
 extern "C" struct LimberModuleSearch {
-  LimberModuleSearch(std::string name, const Cube& cube, std::size_t population, std::uint32_t seed)
+  LimberModuleSearch(const std::string& name, const Cube& cube, std::size_t population, std::uint32_t seed)
       : costs_(population * cube.objectives), thread_([=, this] { run(name, cube, population, seed); }) {}
   ~LimberModuleSearch() {
     exchange_.end();

@@ -66,6 +66,7 @@ Evaluated value_of(const Vector& objectives) { return {objectives, {}, 1}; }
 void tell_next(Search& search) {
   const std::vector<Vector> individuals = search.ask();
   std::vector<Evaluated> values;
+  values.reserve(individuals.size());
   for (const Vector& x : individuals) values.push_back(value_of({x[0] + x[1], x[2]}));
   search.tell(individuals, values);
 }
@@ -85,6 +86,7 @@ TEST(ModuleSearch, FailedIndividualsHaveTheLargestCosts) {
   const auto search = Search::create(options(Search::Algorithm::nspso));
   const auto tell_values = [&](const std::vector<Vector>& objectives) {
     std::vector<Evaluated> values;
+    values.reserve(objectives.size());
     for (const Vector& objective : objectives) values.push_back(value_of(objective));
     search->tell(search->ask(), values);
     return last_costs();

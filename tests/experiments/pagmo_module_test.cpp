@@ -47,7 +47,7 @@ struct Case {
   Search::Algorithm algorithm;
   std::size_t objectives;
 };
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
 
 /// The costs of an individual: the distance from a point, from two points, or from three.
 Vector costs(const Vector& x, std::size_t objectives) {
