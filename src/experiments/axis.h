@@ -1,6 +1,7 @@
 // Axis: a varied parameter of an experiment, with its values or its range. [any]
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>

@@ -184,6 +184,14 @@ TEST(BashCompletion, OffersMatchingWords) {
   }
 }
 
+// Parentheses at the end of a pattern are qualifiers unless they contain alternatives.
+TEST(ZshCompletion, PatternsOfFilesHaveNoQualifiers) {
+  const std::string text = run({"completion", "zsh"}).out;
+  EXPECT_NE(text.find(R"x('1:TAKE:_files -g "*.take"')x"), std::string::npos);
+  EXPECT_NE(text.find(R"x(_files -g "*.(urdf|xml)"')x"), std::string::npos);
+  EXPECT_FALSE(std::regex_search(text, std::regex(R"x(\([a-z]+\)"')x"))) << text;
+}
+
 TEST(ZshCompletion, HasEveryCommandAndOption) {
   const std::string text = run({"completion", "zsh"}).out;
   EXPECT_TRUE(text.starts_with("#compdef limber\n")) << "zsh finds it by this line";

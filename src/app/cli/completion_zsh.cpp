@@ -34,8 +34,10 @@ std::string zsh_action(const OptionInfo& option) {
   }
   if (extension == "/") return "_files -/";
   if (extension == "*") return "_files";
-  // a space: the value has no completion
-  return extension.empty() ? " " : fmt::format("_files -g \"*.({})\"", extension);
+  if (extension.empty()) return " ";  // a space: the value has no completion
+  // parentheses around one extension would be qualifiers of the pattern
+  const bool several = extension.find('|') != std::string::npos;
+  return fmt::format("_files -g \"*.{}\"", several ? fmt::format("({})", extension) : extension);
 }
 
 std::string zsh_value(const OptionInfo& option) {

@@ -181,10 +181,11 @@ void IslandSolver::convert_couplings(const btContactSolverInfo& info) {
   couplings_swept_ = true;
   for (Coupling& coupling : couplings_) {
     const CoupledConstraint::Row& planned = coupling.constraint->row();
+    const auto jacobians = coupling.constraint->jacobians();
     btScalar rate = 0;
     for (int k = 0; k < coupling.count; ++k) {
       CoupledSide& side = sides_[coupling.first + k];
-      const CoupledConstraint::BodyJacobian& from = coupling.constraint->jacobians()[k];
+      const CoupledConstraint::BodyJacobian& from = jacobians[k];
       const btSolverBody& body = m_tmpSolverBodyPool[side.body];
       side.linear = from.linear;
       side.angular = from.angular;
