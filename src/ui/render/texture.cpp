@@ -60,7 +60,8 @@ GlTexture make_texture(const model::Image& image, int max_side) {
   upload(texture, GL_SRGB8_ALPHA8, image.width, image.height, image.pixels.data(), GL_REPEAT);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   constexpr float kAnisotropy = 4;
-  if (epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+  // where texture coordinates are constant, llvmpipe of Mesa 25 would sample black
+  if (!gl_is_software() && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
     glTexParameterf(GL_TEXTURE_2D, GL_TEXTURE_MAX_ANISOTROPY_EXT, kAnisotropy);
   glGenerateMipmap(GL_TEXTURE_2D);
   return texture;
