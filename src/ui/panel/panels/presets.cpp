@@ -34,6 +34,7 @@ class PresetsPanel : public Panel {
     const bool compact = window < static_cast<float>(kCompactBelow) * s * 0.95F;
     if (!compact) ImGui::SameLine(0, 16 * s);  // else in its own row
     const ImVec2 strip = ImGui::GetCursorPos();
+    if (!compact) ImGui::NewLine();  // else items of the other row return to this one, from Dear ImGui 1.90 on
     const float morph = window - static_cast<float>(kMorphWidth) * s;
     ImGui::SetCursorPos({morph, top_row_y(context, 1)});
     draw_morph(context, names, s);
