@@ -24,17 +24,18 @@ void add_choices(std::vector<std::string>& choices, std::string_view text, char 
   }
 }
 
-// CLI11 joins the name of a value and the descriptions of its checks by colons: "N:FLOAT in [0.5 - 4]",
+constexpr std::string_view kRange = ":from ";  // of between()
+
+// CLI11 joins the name of a value and the descriptions of its checks by colons: "N:from 0.5 to 4",
 // "SHELL:{bash,zsh}"
 void read_value(OptionInfo& info, std::string text) {
   if (const std::size_t set = text.find(":{"); set != std::string::npos) {
     add_choices(info.choices, std::string_view(text).substr(set + 2, text.size() - set - 3), ',');
     text.resize(set);
   }
-  if (const std::size_t range = text.find(" in ["); range != std::string::npos) {
-    info.range = text.substr(range + 5, text.size() - range - 6);
-    if (const std::size_t dash = info.range.find(" - "); dash != std::string::npos) info.range.replace(dash, 3, " to ");
-    text.resize(text.rfind(':', range));
+  if (const std::size_t range = text.find(kRange); range != std::string::npos) {
+    info.range = text.substr(range + kRange.size());
+    text.resize(range);
   }
   add_choices(info.choices, text, '|');
   info.value = std::move(text);

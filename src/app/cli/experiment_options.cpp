@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/cli/play_options.h"
+#include "app/option_checks.h"
 #include "base/text.h"
 
 namespace limber::app {
@@ -80,7 +81,7 @@ void add_common(CLI::App& app, ExperimentOptions& o, const char* params) {
       ->check(number_above(0, 1e9, "a time in seconds"));
   app.add_option("--jobs", o.jobs, "Number of processes; default: one per core. The result is the same for any.")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024));
+      ->check(between(1, 1024));
   app.add_option("--mpi", o.mpi,
                  "The MPI whose mpirun or srun started this: auto (default), openmpi, mpich; off: run separately.")
       ->type_name("auto|openmpi|mpich|off")
@@ -158,13 +159,13 @@ void add_evolve(CLI::App& app, EvolveCommand& command) {
       ->allow_extra_args(false);
   evolve->add_option("--generations", command.generations, "Number of generations; default 100.")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000000));
+      ->check(between(1, 1000000));
   evolve
       ->add_option(
           "--population", command.population,
           "Points per generation; default: 4 + 3 ln(number of parameters), of map-elites 100, of the others 40.")
       ->type_name("N")
-      ->check(CLI::Range(4, 100000));
+      ->check(between(4, 100000));
   evolve->add_option("--search-seed", command.search_seed, "Seed of the search; default 1.")
       ->type_name("N")
       ->check(count());

@@ -26,6 +26,7 @@
 #include "app/exit_code.h"
 #include "app/experiments/evolve_play.h"
 #include "app/experiments/worker.h"
+#include "app/option_checks.h"
 #include "app/paths.h"
 #include "app/service/service.h"
 #include "app/view/display_options.h"
@@ -197,7 +198,7 @@ void add_send(CLI::App& app, SendCommand& command) {
   send->add_option("--to", command.to, "Receiver; default 127.0.0.1:9003.")->type_name("[HOST:]PORT");
   send->add_option("--wait", command.wait, "Seconds to wait for replies; 0: don't wait.")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 60.0));
+      ->check(between(0.0, 60.0));
 }
 
 void add_new(CLI::App& app, NewCommand& command) {
@@ -340,7 +341,7 @@ void add_docs(CLI::App& app, DocsCommand& command) {
   docs->add_option("--port", command.port,
                    "TCP port on 127.0.0.1; 0: a free one; default: 9010, or a free one if it is in use.")
       ->type_name("PORT")
-      ->check(CLI::Range(0, 65535));
+      ->check(between(0, 65535));
   docs->add_flag("--no-browser", command.no_browser, "Don't open a browser.");
 }
 

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "app/option_checks.h"
 #include "app/show/query_host.h"
 #include "app/view/display_options.h"
 #include "base/text.h"
@@ -129,11 +130,11 @@ void add_log(CLI::App& play, LogOptions& o) {
           ->type_name("FILE");
   play.add_option("--log-size", o.megabytes, "Start a new log file at this size; default 10.")
       ->type_name("MB")
-      ->check(CLI::Range(0.001, 1e6))
+      ->check(between(0.001, 1e6))
       ->needs(file);
   play.add_option("--log-keep", o.old_files, "Number of old log files to keep, FILE.1 is the latest; default 5.")
       ->type_name("N")
-      ->check(CLI::Range(0, 1000))
+      ->check(between(0, 1000))
       ->needs(file);
   play.add_flag("--quiet", o.quiet, "Print only warnings and errors to standard error.");
 }
@@ -147,7 +148,7 @@ void add_run_options(CLI::App& play, PlayOptions& o) {
   play.add_option("--threads", o.threads,
                   "Number of threads for physics and readouts, default 1; the result is identical for any number.")
       ->type_name("N")
-      ->check(CLI::Range(1, ThreadPool::kMaxThreads));
+      ->check(between(1, ThreadPool::kMaxThreads));
 }
 
 // Adds the options of models. Returns --save-scene.

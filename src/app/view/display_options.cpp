@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "app/option_checks.h"
 #include "app/view/film_file.h"
 #include "base/text.h"
 
@@ -38,7 +39,7 @@ void add_panel_scale(CLI::App& command, DisplayOptions& o) {
   command
       .add_option("--panel-scale", o.panel_scale, "Scale of the panel, multiplied by the screen's scale; default 1.")
       ->type_name("N")
-      ->check(CLI::Range(0.5, 4.0));
+      ->check(between(0.5, 4.0));
 }
 
 }  // namespace
@@ -67,7 +68,7 @@ void add_display_options(CLI::App& play, DisplayOptions& o) {
   play.add_option("--screenshot", o.screenshot, "Render an image without a display, and exit.")->type_name("FILE.png");
   play.add_option("--at", o.at, "Simulated time of --screenshot in seconds; default 0.")
       ->type_name("S")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(between(0.0, 1e6));
   play.add_option(
           "--render", o.render,
           "Render a film of length --duration without a display: film.mp4 (with ffmpeg), or shot_%05d.png for images; "
@@ -75,7 +76,7 @@ void add_display_options(CLI::App& play, DisplayOptions& o) {
       ->type_name("FILE|PATTERN");
   play.add_option("--fps", o.fps, "Frames per second of --render; default 60.")
       ->type_name("N")
-      ->check(CLI::Range(0.001, 1000.0));
+      ->check(between(0.001, 1000.0));
   play.add_flag("--panel", o.panel, "With --screenshot: draw the panel, too.");
   add_panel_scale(play, o);
 }
