@@ -121,7 +121,9 @@ TEST(EveryProperty, IsSetInLua) {
   }
   const SceneFile scene(text + "end)\n");
   EngineLink link;
-  Engine engine(link, fast_options(scene.path()));
+  EngineOptions options = fast_options(scene.path());
+  options.scene_options.limits.call_ms = options.scene_options.limits.run_ms;  // one long callback
+  Engine engine(link, options);
   const Result<void> started = engine.start();
   ASSERT_TRUE(started.ok()) << started.error();
   std::vector<Outgoing> out;
