@@ -111,7 +111,7 @@ TEST(Window, FillsTheScreenAndRemembersIt) {
 // on Dvorak the period is at the position of E on a US keyboard; AZERTY prints it with Shift only, so it keeps its
 // position
 TEST(Window, KeysFollowTheLayout) {
-  for (const std::string layout : {"dvorak", "fr"}) {
+  for (const std::string layout : {"us(dvorak)", "fr"}) {
     const Display display("320x240x24", {"-noreset"});  // otherwise the layout is reset with the program that set it
     std::vector<std::string> words = display.environment();
     words.insert(words.end(), {"setxkbmap", layout});
