@@ -89,7 +89,7 @@ without_mpi() {
 with_mpi() { [ "$(mpi/run "$1" openmpi_table mpich_table | tee /dev/stderr | grep -c '^ok ')" = 2 ]; }
 swarm() {
   limber evolve /usr/share/limber/scripts/gait.lua --maximize speed --algorithm pso --generations 2 --population 4 \
-    --duration 1 --out swarm "$@" 2>swarm.log
+    --duration 1 --out swarm 2>swarm.log
 }
 without_pagmo() {
   ! swarm || return

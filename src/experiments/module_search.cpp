@@ -24,19 +24,6 @@ using Json = nlohmann::json;
 constexpr std::size_t kDigits = 16;  // of a cost
 constexpr std::uint64_t kHashStart = 1;
 
-const char* module_name(Search::Algorithm algorithm) {
-  switch (algorithm) {
-    case Search::Algorithm::gaco:
-      return "gaco";
-    case Search::Algorithm::maco:
-      return "maco";
-    case Search::Algorithm::nspso:
-      return "nspso";
-    default:
-      return "pso";
-  }
-}
-
 // Returns nullopt if the text isn't a list of costs.
 std::optional<std::vector<double>> parse_costs(std::string_view text) {
   if (text.size() % kDigits != 0) return {};
@@ -66,7 +53,7 @@ void ModuleSearch::start() {
   if (options_.module == nullptr) return;
   // pagmo's seeds have 32 bits
   const auto seed = static_cast<std::uint32_t>(options_.seed ^ (options_.seed >> 32));
-  search_.reset(options_.module->create(module_name(options_.algorithm), options_.axes, options_.objectives,
+  search_.reset(options_.module->create(name_of(options_.algorithm), options_.axes, options_.objectives,
                                         options_.population, seed));
   next();
 }

@@ -26,7 +26,7 @@ class ModuleSearch final : public Search {
   explicit ModuleSearch(const Options& options);
 
   std::vector<Vector> ask() const override { return individuals_; }
-  /// Throws std::runtime_error if the algorithm fails, which needs a lack of memory.
+  /// Throws std::runtime_error if the algorithm fails because memory is short.
   void tell(const std::vector<Vector>& individuals, const std::vector<Evaluated>& values) override;
   std::uint64_t generation() const override { return generation_; }
   std::size_t population() const override { return options_.population; }

@@ -1,6 +1,8 @@
 // CMA-ES within bounds, MAP-Elites and NSGA-II, as searches; the choice of the algorithm.
 #include "experiments/search.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +19,8 @@ namespace {
 
 using Json = nlohmann::json;
 
+// by Search::Algorithm
+constexpr std::array<const char*, 7> kNames{"cma-es", "map-elites", "nsga2", "gaco", "maco", "nspso", "pso"};
 constexpr double kStart = 0.5;  // the middle of each range
 constexpr double kSigma = 0.3;  // of the range, as recommended for bounds in Hansen's tutorial
 constexpr std::size_t kArchiveBatch = 100;
@@ -128,6 +132,14 @@ class GeneticSearch final : public Search {
 };
 
 }  // namespace
+
+const char* name_of(Search::Algorithm algorithm) { return kNames[static_cast<std::size_t>(algorithm)]; }
+
+std::optional<Search::Algorithm> algorithm_named(std::string_view name) {
+  const auto* const known = std::ranges::find(kNames, name);
+  if (known == kNames.end()) return {};
+  return static_cast<Search::Algorithm>(known - kNames.begin());
+}
 
 double reflected(double x) {
   const double periodic = std::abs(x) - 2 * std::floor(std::abs(x) / 2);

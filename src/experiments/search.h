@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -60,6 +61,10 @@ class Search {
   virtual std::string save() const = 0;
   virtual Result<void> restore(std::string_view text) = 0;
 };
+
+/// Returns the name of an algorithm, such as "cma-es", and the algorithm of a name.
+const char* name_of(Search::Algorithm algorithm);
+std::optional<Search::Algorithm> algorithm_named(std::string_view name);
 
 /// True if the algorithm belongs to the module.
 constexpr bool is_in_module(Search::Algorithm algorithm) { return algorithm >= Search::Algorithm::gaco; }

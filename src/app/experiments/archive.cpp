@@ -32,8 +32,7 @@ using experiments::ResultInfo;
 using experiments::Search;
 using RecordJson = nlohmann::ordered_json;
 
-// words for --algorithm, and prefixes of the names of elites, by Search::Algorithm
-constexpr std::array<const char*, 7> kAlgorithms{"cma-es", "map-elites", "nsga2", "gaco", "maco", "nspso", "pso"};
+// prefixes of the names of elites, by Search::Algorithm
 constexpr std::array<std::string_view, 7> kPrefixes{"best_", "cell_", "front_", "best_", "front_", "front_", "best_"};
 
 // True if a search gives such names to elites.
@@ -75,14 +74,6 @@ std::vector<std::size_t> chosen_for_presets(const std::vector<Elite>& elites) {
 }
 
 }  // namespace
-
-const char* name_of(Search::Algorithm algorithm) { return kAlgorithms[static_cast<std::size_t>(algorithm)]; }
-
-std::optional<Search::Algorithm> algorithm_named(std::string_view name) {
-  const auto* const known = std::ranges::find(kAlgorithms, name);
-  if (known == kAlgorithms.end()) return {};
-  return static_cast<Search::Algorithm>(known - kAlgorithms.begin());
-}
 
 std::size_t best_of(const std::vector<Elite>& elites, std::size_t objective) {
   const auto best =
@@ -129,7 +120,8 @@ Result<SearchRecord> SearchRecord::parse(std::string_view text) try {
   for (const RecordJson& entry : json.at("parameters")) record.axes.push_back(axis_of(entry));
   for (const RecordJson& entry : json.at("descriptors"))
     record.descriptors.push_back({entry.at("name"), entry.at("min"), entry.at("max"), entry.at("cells")});
-  const std::optional<Search::Algorithm> algorithm = algorithm_named(json.at("algorithm").get<std::string>());
+  const std::optional<Search::Algorithm> algorithm =
+      experiments::algorithm_named(json.at("algorithm").get<std::string>());
   record.population = json.at("population");
   record.search_seed = json.at("search_seed");
   if (!algorithm || record.seeds.empty() || record.objectives.empty() || record.axes.empty() ||

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -52,10 +51,6 @@ struct SearchRecord {
   /// Returns the names of the elites: best_N, front_N, or cell_I_K with the cells of the descriptors, from 1.
   std::vector<std::string> names(const std::vector<experiments::Elite>& elites) const;
 };
-
-/// Returns the word for --algorithm, and the algorithm of a word.
-const char* name_of(experiments::Search::Algorithm algorithm);
-std::optional<experiments::Search::Algorithm> algorithm_named(std::string_view name);
 
 /// Returns the index of the elite that is best in the first objective. Requires at least one.
 std::size_t best_of(const std::vector<experiments::Elite>& elites, std::size_t objective = 0);

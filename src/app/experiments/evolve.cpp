@@ -162,7 +162,7 @@ Result<void> Evolution::choose_algorithm() {
   if (several && archive) return Error{"--descriptor: a search for variety has one objective; leave out the others"};
   const std::string& wanted = command_.algorithm;
   const Search::Algorithm natural = archive ? map_elites : several ? nsga2 : cma_es;
-  const Search::Algorithm chosen = algorithm_named(wanted).value_or(natural);
+  const Search::Algorithm chosen = experiments::algorithm_named(wanted).value_or(natural);
   if (archive && chosen != map_elites)
     return Error{fmt::format("--algorithm {}: only map-elites has descriptors", wanted)};
   if (!archive && chosen == map_elites)
